@@ -1,0 +1,130 @@
+"""Everything seatlook raises on purpose.
+
+::
+
+    SeatlookError
+    ├── InputError(ValueError)      a file, option or argument is wrong      exit 2
+    │   └── AssemblyError           the parts are fine, together they are not
+    ├── SolverError                 the solver cannot give a result          exit 3
+    │   ├── ConvergenceError        carries the last Solution
+    │   └── InvertedElementError
+    └── RenderError                 no picture, or a wrong one               exit 3
+        └── NoOffscreenContext      no software GL library on this machine
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+if TYPE_CHECKING:
+    from seatlook.model import Solution
+
+
+class SeatlookError(Exception):
+    """Base of all errors; ``exit_code`` is what the command line returns."""
+
+    exit_code: ClassVar[int] = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Problem:
+    """One thing wrong with an input: where, which key, what was got, what is expected.
+
+    Examples
+    --------
+    >>> print(Problem(file=Path("seat.toml"), line=14, key="rig[1].elevation_deg",
+    ...               got="'high'", expected="number"))
+    seat.toml:14: rig[1].elevation_deg: got 'high', expected number
+    """
+
+    key: str
+    got: str
+    expected: str
+    file: Path | None = None
+    line: int | None = None
+    hint: str = ""
+
+    def __str__(self) -> str:
+        place = "" if self.file is None else str(self.file)
+        if self.line is not None:
+            place += f":{self.line}"
+        head = f"{place}: " if place else ""
+        tail = f" ({self.hint})" if self.hint else ""
+        return f"{head}{self.key}: got {self.got}, expected {self.expected}{tail}"
+
+
+class InputError(SeatlookError, ValueError):
+    """A file, option or argument is wrong; holds every problem found, not only the first."""
+
+    exit_code = 2
+
+    def __init__(self, problems: Problem | Iterable[Problem]) -> None:
+        self.problems = (problems,) if isinstance(problems, Problem) else tuple(problems)
+        super().__init__("\n".join(map(str, self.problems)))
+
+    @classmethod
+    def single(
+        cls,
+        key: str,
+        *,
+        got: object,
+        expected: str,
+        file: Path | None = None,
+        line: int | None = None,
+        hint: str = "",
+    ) -> InputError:
+        """Make an error of one problem."""
+        return cls(
+            Problem(key=key, got=str(got), expected=expected, file=file, line=line, hint=hint)
+        )
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[tuple[Problem, ...]]]:
+        return type(self), (self.problems,)
+
+
+class AssemblyError(InputError):
+    """Pattern, foam and materials are readable but do not make a cover together."""
+
+
+class SolverError(SeatlookError):
+    """The solver cannot give a result."""
+
+    exit_code = 3
+
+
+class ConvergenceError(SolverError):
+    """The solver stopped before equilibrium; ``solution`` is the last state it had."""
+
+    def __init__(self, reason: str, solution: Solution) -> None:
+        super().__init__(reason)
+        self.solution = solution
+
+
+class InvertedElementError(SolverError):
+    """A triangle of the mesh is turned over or has no area."""
+
+
+class RenderError(SeatlookError):
+    """No picture, or one that would be wrong."""
+
+    exit_code = 3
+
+
+class NoOffscreenContext(RenderError):
+    """No software GL library can be loaded, so nothing can be drawn on this machine."""
+
+
+def did_you_mean(word: str, choices: Iterable[str]) -> str:
+    """Return ``did you mean 'x'?`` for the closest choice, or an empty text.
+
+    Examples
+    --------
+    >>> did_you_mean("roughnes", ["albedo", "roughness"])
+    "did you mean 'roughness'?"
+    """
+    close = difflib.get_close_matches(word, list(choices), n=1)
+    return f"did you mean {close[0]!r}?" if close else ""

@@ -1,0 +1,46 @@
+"""The core types: frozen, checked when made, SI units inside."""
+
+from seatlook.model._check import FloatArray, IntArray
+from seatlook.model.cover import Anchor, Cover, Points, Solution, Stage, Stitching, WrinkleMap
+from seatlook.model.light import LIGHTS, VIEWS, Camera, Light, Rig, bulb, direction, named_view, sun
+from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
+from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
+from seatlook.model.scene import Frame, Hook, Limit, Pose, Scene, ZoneBox
+
+__all__ = [
+    "LIGHTS",
+    "VIEWS",
+    "Anchor",
+    "Appearance",
+    "Camera",
+    "Cover",
+    "Curve",
+    "Edge",
+    "Fabric",
+    "FloatArray",
+    "Foam",
+    "FoamMaterial",
+    "Frame",
+    "Hook",
+    "IntArray",
+    "Light",
+    "Limit",
+    "Material",
+    "Notch",
+    "Panel",
+    "Pattern",
+    "Points",
+    "Pose",
+    "Rig",
+    "Scene",
+    "Seam",
+    "Solution",
+    "Stage",
+    "Stitching",
+    "WrinkleMap",
+    "ZoneBox",
+    "bulb",
+    "direction",
+    "named_view",
+    "sun",
+]

@@ -1,0 +1,68 @@
+"""Checks that every core type runs on its arrays when it is made."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from seatlook.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+def floats(owner: object, name: str, *shape: int | None, finite: bool = True) -> None:
+    """Make field ``name`` a read-only float64 array of ``shape`` (None = any length)."""
+    _array(owner, name, np.float64, shape)
+    value = getattr(owner, name)
+    if finite and not np.isfinite(value).all():
+        bad = int(np.count_nonzero(~np.isfinite(value)))
+        raise InputError.single(_key(owner, name), got=f"{bad} nan or inf", expected="finite")
+
+
+def ints(owner: object, name: str, *shape: int | None, below: int | None = None) -> None:
+    """Make field ``name`` a read-only int64 array with entries in [0, below)."""
+    _array(owner, name, np.int64, shape)
+    value = getattr(owner, name)
+    if below is not None and value.size and (value.min() < 0 or value.max() >= below):
+        raise InputError.single(
+            _key(owner, name),
+            got=f"index range {value.min()}..{value.max()}",
+            expected=f"0..{below - 1}",
+        )
+
+
+def in_range(owner: object, name: str, low: float, high: float) -> None:
+    """Refuse a number (or array) outside [low, high]; nan is outside."""
+    value = np.asarray(getattr(owner, name))
+    if not bool(((value >= low) & (value <= high)).all()):
+        raise InputError.single(
+            _key(owner, name), got=getattr(owner, name), expected=f"{low:g} to {high:g}"
+        )
+
+
+def positive(owner: object, *names: str) -> None:
+    """Refuse a number that is not finite and above zero."""
+    for name in names:
+        value = getattr(owner, name)
+        if not (np.isfinite(value) and value > 0):
+            raise InputError.single(_key(owner, name), got=value, expected="a number above 0")
+
+
+def _key(owner: object, name: str) -> str:
+    return f"{type(owner).__name__}.{name}"
+
+
+def _array(owner: object, name: str, dtype: Any, shape: tuple[int | None, ...]) -> None:
+    value = np.array(getattr(owner, name), dtype=dtype, order="C")
+    wanted = tuple("n" if n is None else n for n in shape)
+    if value.ndim != len(shape) or any(
+        n is not None and n != m for n, m in zip(shape, value.shape, strict=True)
+    ):
+        raise InputError.single(
+            _key(owner, name), got=f"shape {value.shape}", expected=f"shape {wanted}"
+        )
+    value.setflags(write=False)
+    object.__setattr__(owner, name, value)

@@ -1,0 +1,228 @@
+"""The meshed cover before solving, the solved one, and its wrinkle map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.model._check import FloatArray, IntArray, floats, ints
+from seatlook.model.material import Foam, Material
+
+Status = Literal["converged", "not converged"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Points:
+    """Points on mesh edges: ``x = w0 x[v0] + w1 x[v1]``, so they need no vertex of their own.
+
+    Parameters
+    ----------
+    vertices : (s, 2) int64; weights : (s, 2) float64, each row sums to 1
+    """
+
+    vertices: IntArray
+    weights: FloatArray
+
+    def __post_init__(self) -> None:
+        ints(self, "vertices", None, 2)
+        floats(self, "weights", len(self.vertices), 2)
+
+    def __len__(self) -> int:
+        return len(self.vertices)
+
+    def at(self, x: FloatArray) -> FloatArray:
+        """Return the points (s, d) for vertex positions ``x`` (n, d)."""
+        return np.asarray(np.einsum("sk,skd->sd", self.weights, x[self.vertices]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stitching:
+    """Pairs of points that a seam pulls together.
+
+    Parameters
+    ----------
+    a, b : Points               same length s
+    length : (s,) float64 [m]   seam length that each pair stands for
+    stage : name of the stage in which the seam closes
+    """
+
+    name: str
+    a: Points
+    b: Points
+    length: FloatArray
+    stage: str
+
+    def __post_init__(self) -> None:
+        floats(self, "length", len(self.a))
+        if len(self.a) != len(self.b):
+            raise InputError.single(
+                f"seam {self.name}", got=f"{len(self.a)} and {len(self.b)} points", expected="pairs"
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Anchor:
+    """Points of the cover that are pulled to fixed targets: a wire (hook) or the frame.
+
+    Parameters
+    ----------
+    points : Points; target : (s, 3) float64 [m]; length : (s,) float64 [m]
+    """
+
+    name: str
+    kind: Literal["hook", "frame"]
+    points: Points
+    target: FloatArray
+    length: FloatArray
+    stage: str
+
+    def __post_init__(self) -> None:
+        floats(self, "target", len(self.points), 3)
+        floats(self, "length", len(self.points))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stage:
+    """A stretch of process time [s] in which some ties are ramped from 0 to full."""
+
+    name: str
+    start: float
+    end: float
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.start < self.end:
+            raise InputError.single(
+                f"stage {self.name}",
+                got=f"start {self.start}, end {self.end}",
+                expected="0 <= start < end",
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cover:
+    """All panels meshed and placed, with what will pull on them.
+
+    Parameters
+    ----------
+    rest : (n, 2) float64 [m]     X, panel by panel, first axis along the warp
+    uv : (n, 2) float64 [m]       the same in pattern coordinates, for textures
+    positions : (n, 3) float64 [m]  x before sewing, imperfection included
+    faces : (m, 3) int64          counter-clockwise in ``rest``, so the normal is the visible side
+    panel : (m,) int64            index into ``panel_names`` and ``materials``
+    zone : (m,) int64             index into ``zone_names``
+    element_size : float [m]      mean edge length h
+    """
+
+    rest: FloatArray
+    uv: FloatArray
+    positions: FloatArray
+    faces: IntArray
+    panel: IntArray
+    panel_names: tuple[str, ...]
+    materials: tuple[Material, ...]
+    zone: IntArray
+    zone_names: tuple[str, ...]
+    stitchings: tuple[Stitching, ...] = ()
+    anchors: tuple[Anchor, ...] = ()
+    stages: tuple[Stage, ...] = ()
+    foam: Foam | None = None
+    element_size: float
+    seed: int = 0
+    scene_digest: str = ""
+
+    def __post_init__(self) -> None:
+        n, m = len(self.rest), len(self.faces)
+        floats(self, "rest", None, 2)
+        floats(self, "uv", n, 2)
+        floats(self, "positions", n, 3)
+        ints(self, "faces", None, 3, below=n)
+        ints(self, "panel", m, below=len(self.panel_names))
+        ints(self, "zone", m, below=len(self.zone_names))
+        if len(self.materials) != len(self.panel_names):
+            raise InputError.single(
+                "Cover.materials",
+                got=f"{len(self.materials)}",
+                expected=f"one for each of {len(self.panel_names)} panels",
+            )
+
+    @property
+    def thickness(self) -> FloatArray:
+        """Thickness t per face, (m,) [m]."""
+        return np.array([m.fabric.thickness for m in self.materials])[self.panel]
+
+    @property
+    def rest_area(self) -> FloatArray:
+        """Area per face at rest, (m,) [m2]."""
+        p = self.rest[self.faces]
+        u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+        return np.asarray(0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solution:
+    """The solved cover; everything needed to restart it, map it or draw it.
+
+    Parameters
+    ----------
+    positions, velocities : (n, 3) float64 [m], [m/s]
+    strain_top, strain_mid, strain_bottom : (m, 2, 2) float64 [1]
+        Green strain in warp/weft axes on both faces and the mid surface.
+    multipliers : name of stitching or anchor -> (s, 3) [N], force on side a or on the cover
+    friction_anchor : (n, 3) float64 [m]   where each vertex last stuck to the foam; nan = free
+    history : column -> (k,), one row per step: time, energy, residual, gap, iterations, ...
+    figures : name -> final value, e.g. "seam_gap_max" [m], "residual" [1], "cpu_seconds"
+    """
+
+    cover: Cover
+    positions: FloatArray
+    velocities: FloatArray
+    strain_top: FloatArray
+    strain_mid: FloatArray
+    strain_bottom: FloatArray
+    multipliers: MappingProxyType[str, FloatArray] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
+    friction_anchor: FloatArray
+    stage: str
+    status: Status
+    reason: str = ""
+    history: MappingProxyType[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
+    figures: MappingProxyType[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    version: str = ""
+
+    def __post_init__(self) -> None:
+        n, m = len(self.cover.rest), len(self.cover.faces)
+        floats(self, "positions", n, 3)
+        floats(self, "velocities", n, 3)
+        for name in ("strain_top", "strain_mid", "strain_bottom"):
+            floats(self, name, m, 2, 2)
+        floats(self, "friction_anchor", n, 3, finite=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WrinkleMap:
+    """Indices per face, each (m,) float64.
+
+    Parameters
+    ----------
+    c : [1/m]                       curvature index, positive on a crown seen from outside
+    w1, w2 : [1]                    C / C_threshold and its wrinkle side, w2 >= 0
+    r_stretch : [1] in [0, 1]       share of stretch
+    w_stretch, w_compression : [1]  w2 split by cause; they add up to w2
+    """
+
+    c: FloatArray
+    w1: FloatArray
+    w2: FloatArray
+    r_stretch: FloatArray
+    w_stretch: FloatArray
+    w_compression: FloatArray
+
+    def __post_init__(self) -> None:
+        m = len(self.c)
+        for name in ("c", "w1", "w2", "r_stretch", "w_stretch", "w_compression"):
+            floats(self, name, m)

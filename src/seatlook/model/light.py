@@ -1,0 +1,216 @@
+"""Lights, rigs and cameras in photometric units."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.model._check import FloatArray, floats, in_range, positive
+
+# Linear sRGB of direct sun (ASTM G173, 5233 K), scaled so that its luminance is 1.
+SUN_COLOUR = (1.159, 0.974, 0.788)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Light:
+    """One light: far away (a direction) or near (a position).
+
+    Parameters
+    ----------
+    intensity : float           [lux] on a facing plane when far, [cd] when near
+    vector : (3,) float64       unit vector towards the light when far, position [m] when near
+    near : bool
+    colour : (3,) float64       linear sRGB of luminance 1
+    size : float                angular diameter [rad] when far, radius [m] when near
+    """
+
+    name: str
+    intensity: float
+    vector: FloatArray
+    near: bool
+    colour: FloatArray = field(default_factory=lambda: np.ones(3))
+    size: float = 0.0
+
+    def __post_init__(self) -> None:
+        floats(self, "vector", 3)
+        floats(self, "colour", 3)
+        positive(self, "intensity")
+        in_range(self, "size", 0.0, 3.2)
+
+
+def direction(azimuth_deg: float, elevation_deg: float) -> FloatArray:
+    """Unit vector (3,) towards azimuth (from -y, counter-clockwise from above) and elevation.
+
+    Examples
+    --------
+    >>> direction(90.0, 0.0).round(6).tolist()
+    [1.0, 0.0, 0.0]
+    """
+    azimuth, elevation = np.radians([azimuth_deg, elevation_deg])
+    level = np.cos(elevation)
+    return np.array([level * np.sin(azimuth), -level * np.cos(azimuth), np.sin(elevation)])
+
+
+def sun(
+    *,
+    illuminance_lux: float = 97_000.0,
+    elevation_deg: float,
+    azimuth_deg: float,
+    angular_diameter_deg: float = 0.5332,
+    name: str = "sun",
+) -> Light:
+    """Direct sun; 97 klx is ASTM G173 direct normal light on a facing plane."""
+    if not -90 <= elevation_deg <= 90:
+        raise InputError.single("sun.elevation_deg", got=elevation_deg, expected="-90 to 90")
+    return Light(
+        name=name,
+        intensity=illuminance_lux,
+        vector=direction(azimuth_deg, elevation_deg),
+        near=False,
+        colour=np.array(SUN_COLOUR),
+        size=float(np.radians(angular_diameter_deg)),
+    )
+
+
+def bulb(
+    *,
+    lumen: float = 800.0,
+    position_mm: tuple[float, float, float],
+    radius_mm: float = 30.0,
+    temperature_k: float = 2700.0,
+    name: str = "bulb",
+) -> Light:
+    """Isotropic bulb: ``lumen / (4 pi)`` candela in every direction."""
+    return Light(
+        name=name,
+        intensity=lumen / (4 * np.pi),
+        vector=np.asarray(position_mm, dtype=float) / 1000,
+        near=True,
+        colour=planck_colour(temperature_k),
+        size=radius_mm / 1000,
+    )
+
+
+LIGHTS: dict[str, Callable[..., Light]] = {"sun": sun, "bulb": bulb}
+
+
+def planck_colour(temperature_k: float) -> FloatArray:
+    """Linear sRGB (3,) of luminance 1 of a black body, 1667-25000 K.
+
+    Kim et al. 2002 (US 7024034), cubic fit of the Planckian locus in CIE 1931 xy.
+    """
+    if not 1667 <= temperature_k <= 25000:
+        raise InputError.single("temperature_k", got=temperature_k, expected="1667 to 25000")
+    t = 1000.0 / temperature_k
+    if temperature_k < 4000:
+        x = -0.2661239 * t**3 - 0.2343589 * t**2 + 0.8776956 * t + 0.179910
+    else:
+        x = -3.0258469 * t**3 + 2.1070379 * t**2 + 0.2226347 * t + 0.240390
+    if temperature_k < 2222:
+        y = -1.1063814 * x**3 - 1.34811020 * x**2 + 2.18555832 * x - 0.20219683
+    elif temperature_k < 4000:
+        y = -0.9549476 * x**3 - 1.37418593 * x**2 + 2.09137015 * x - 0.16748867
+    else:
+        y = 3.0817580 * x**3 - 5.87338670 * x**2 + 3.75112997 * x - 0.37001483
+    xyz = np.array([x / y, 1.0, (1 - x - y) / y])
+    to_rgb = np.array(
+        [
+            [3.2404542, -1.5371385, -0.4985314],
+            [-0.9692660, 1.8760108, 0.0415560],
+            [0.0556434, -0.2040259, 1.0572252],
+        ]
+    )
+    # Below about 1900 K blue leaves the sRGB triangle; a display cannot show it.
+    return np.maximum(to_rgb @ xyz, 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rig:
+    """A set of lights with one exposure for everything lit by it.
+
+    Parameters
+    ----------
+    ambient : float [cd/m2]     luminance of a sky that is equal in all directions
+    ev100 : float | None        None: from the lux on a grey card at the seat
+    """
+
+    name: str
+    lights: tuple[Light, ...]
+    ambient: float = 0.0
+    ev100: float | None = None
+
+    def __post_init__(self) -> None:
+        if not self.lights and not self.ambient > 0:
+            raise InputError.single(f"rig {self.name}", got="no light", expected="a light or sky")
+        in_range(self, "ambient", 0.0, 1e6)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Camera:
+    """A perspective camera.
+
+    Parameters
+    ----------
+    position, target, up : (3,) float64 [m]
+    vertical_fov_deg : float
+    size : (width, height) in pixels
+    """
+
+    name: str
+    position: FloatArray
+    target: FloatArray
+    up: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
+    vertical_fov_deg: float = 16.2
+    size: tuple[int, int] = (1280, 720)
+
+    def __post_init__(self) -> None:
+        for name in ("position", "target", "up"):
+            floats(self, name, 3)
+        in_range(self, "vertical_fov_deg", 1.0, 120.0)
+        if min(self.size) < 1:
+            raise InputError.single("Camera.size", got=self.size, expected="at least 1 x 1 pixels")
+
+    @property
+    def pixels_per_degree(self) -> float:
+        """Mean over the horizontal field of view."""
+        half = np.radians(self.vertical_fov_deg) / 2
+        horizontal = 2 * np.arctan(np.tan(half) * self.size[0] / self.size[1])
+        return float(self.size[0] / np.degrees(horizontal))
+
+
+def named_view(
+    name: str, *, target: FloatArray, size: tuple[int, int] = (1280, 720), distance: float = 1.1
+) -> Camera:
+    """Camera of a named view, looking at ``target`` [m] from ``distance`` [m].
+
+    Examples
+    --------
+    >>> round(named_view("top", target=np.zeros(3)).pixels_per_degree)
+    45
+    """
+    if name not in VIEWS:
+        raise InputError.single("camera.view", got=name, expected=f"one of {', '.join(VIEWS)}")
+    azimuth, elevation, share = VIEWS[name]
+    up = np.array([0.0, 1.0, 0.0]) if elevation > 89 else np.array([0.0, 0.0, 1.0])
+    return Camera(
+        name=name,
+        position=np.asarray(target) + distance * share * direction(azimuth, elevation),
+        target=target,
+        up=up,
+        size=size,
+    )
+
+
+# azimuth, elevation [deg], share of the viewing distance
+VIEWS: MappingProxyType[str, tuple[float, float, float]] = MappingProxyType(
+    {
+        "driver_door": (75.0, 38.0, 1.6),
+        "front_34": (35.0, 40.0, 1.6),
+        "top": (0.0, 90.0, 1.8),
+        "detail": (35.0, 45.0, 0.6),
+    }
+)

@@ -1,0 +1,221 @@
+"""What a panel is made of (Fabric), what it looks like (Appearance), what lies below (Foam)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.model._check import FloatArray, IntArray, floats, in_range, ints, positive
+
+Texture = Literal["none", "leather", "suede", "weave"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curve:
+    """Stiffness, piecewise linear in strain and constant beyond the last knot.
+
+    Parameters
+    ----------
+    strain : (k,) float64 [1]      Green strain at the knots, rising, the first 0
+    stiffness : (k,) float64 [N/m]  slope of the tension curve there, all above 0
+    """
+
+    strain: FloatArray
+    stiffness: FloatArray
+
+    def __post_init__(self) -> None:
+        floats(self, "strain", None)
+        floats(self, "stiffness", len(self.strain))
+        if self.strain.size == 0 or self.strain[0] != 0 or (np.diff(self.strain) <= 0).any():
+            raise InputError.single(
+                "Curve.strain", got=self.strain.tolist(), expected="rising knots from 0"
+            )
+        if (self.stiffness <= 0).any():
+            raise InputError.single(
+                "Curve.stiffness", got=self.stiffness.tolist(), expected="numbers above 0"
+            )
+
+    @classmethod
+    def linear(cls, stiffness: float) -> Curve:
+        """Make a curve of one constant stiffness [N/m]."""
+        return cls(strain=np.zeros(1), stiffness=np.array([stiffness]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fabric:
+    """Mechanics of a sheet; bending does not follow from the membrane but stands for itself.
+
+    Parameters
+    ----------
+    thickness : float [m]
+    density : float [kg/m2]
+    warp, weft : Curve             tension along and across the grain
+    shear : Curve                  over the shear angle 2 E12
+    poisson : float                contraction in weft per stretch along warp, may exceed 0.5
+    compression_ratio : float      compressive stiffness over the first stiffness of the curve
+    bending_warp, bending_weft, bending_twist : float [N m]
+        D11 (curvature along warp), D22 and D66 of ``m = D kappa`` with kappa = (k11, k22, 2 k12)
+    bending_poisson : float        D12 = bending_poisson * D22
+    """
+
+    thickness: float
+    density: float
+    warp: Curve
+    weft: Curve
+    shear: Curve
+    poisson: float = 0.0
+    compression_ratio: float = 1.0
+    bending_warp: float
+    bending_weft: float
+    bending_twist: float
+    bending_poisson: float = 0.0
+
+    def __post_init__(self) -> None:
+        positive(self, "thickness", "density", "bending_warp", "bending_weft", "bending_twist")
+        in_range(self, "compression_ratio", 1e-6, 1.0)
+        for name, matrix in (("membrane", self.membrane_matrix), ("bending", self.bending_matrix)):
+            lowest = float(np.linalg.eigvalsh(matrix)[0])
+            if not lowest > 0:
+                raise InputError.single(
+                    f"Fabric.{name}",
+                    got=f"smallest eigenvalue {lowest:.4g}",
+                    expected="a positive definite stiffness matrix",
+                    hint="lower the Poisson ratio",
+                )
+
+    @property
+    def membrane_matrix(self) -> FloatArray:
+        """Stiffness (3, 3) [N/m] at zero strain: (S11, S22, S12) = D (E11, E22, 2 E12)."""
+        d11, d22 = self.warp.stiffness[0], self.weft.stiffness[0]
+        d12 = self.poisson * d22
+        return np.array([[d11, d12, 0.0], [d12, d22, 0.0], [0.0, 0.0, self.shear.stiffness[0]]])
+
+    @property
+    def bending_matrix(self) -> FloatArray:
+        """Stiffness (3, 3) [N m]: (m11, m22, m12) = D (k11, k22, 2 k12)."""
+        d12 = self.bending_poisson * self.bending_weft
+        return np.array(
+            [
+                [self.bending_warp, d12, 0.0],
+                [d12, self.bending_weft, 0.0],
+                [0.0, 0.0, self.bending_twist],
+            ]
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Appearance:
+    """How a surface answers light, plus the relief of its grain.
+
+    Parameters
+    ----------
+    albedo : (3,) float64 in [0, 1]       linear sRGB; base colour
+    metalness : float in [0, 1]
+    roughness : float in [0.08, 1]        alpha = roughness squared
+    f0 : float in [0, 0.2]                reflectance of the dielectric part facing
+    sheen : (3,) float64 in [0, 1]        colour of the nap's lobe
+    sheen_roughness : float in [0.4, 1]
+    coat : float in [0, 1]                share covered by a clear finish
+    coat_roughness : float in [0.08, 1]
+    anisotropy : float in [-1, 1]         highlight stretched along (+) or across (-) the warp
+    texture : relief of the grain; scale is the size of one cell [m], depth its height [m]
+    """
+
+    albedo: FloatArray
+    metalness: float = 0.0
+    roughness: float = 0.5
+    f0: float = 0.04
+    sheen: FloatArray = field(default_factory=lambda: np.zeros(3))
+    sheen_roughness: float = 0.5
+    coat: float = 0.0
+    coat_roughness: float = 0.3
+    anisotropy: float = 0.0
+    texture: Texture = "none"
+    texture_scale: float = 0.001
+    texture_depth: float = 0.0
+
+    def __post_init__(self) -> None:
+        floats(self, "albedo", 3)
+        floats(self, "sheen", 3)
+        for name in ("albedo", "metalness", "sheen", "coat"):
+            in_range(self, name, 0.0, 1.0)
+        in_range(self, "f0", 0.0, 0.2)
+        in_range(self, "roughness", 0.08, 1.0)
+        in_range(self, "coat_roughness", 0.08, 1.0)
+        in_range(self, "sheen_roughness", 0.4, 1.0)
+        in_range(self, "anisotropy", -1.0, 1.0)
+        positive(self, "texture_scale")
+        in_range(self, "texture_depth", 0.0, 0.01)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Material:
+    """A named cover material.
+
+    Parameters
+    ----------
+    c_threshold : float [1/m]   curvature at which a wrinkle counts; None takes the scene's
+    source : key -> where the number comes from, or "judgement"
+    """
+
+    name: str
+    fabric: Fabric
+    appearance: Appearance
+    c_threshold: float | None = None
+    source: MappingProxyType[str, str] = field(default_factory=lambda: MappingProxyType({}))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FoamMaterial:
+    """Mechanics of the cushion below the cover.
+
+    Parameters
+    ----------
+    strain, stress : (k,) float64 [1], [Pa]   compression curve of a column, from (0, 0), rising
+    young : float [Pa]; poisson : float        small-strain elasticity, for short waves
+    friction : float                           cover on foam
+    """
+
+    name: str
+    strain: FloatArray
+    stress: FloatArray
+    young: float
+    poisson: float
+    friction: float
+    source: MappingProxyType[str, str] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __post_init__(self) -> None:
+        floats(self, "strain", None)
+        floats(self, "stress", len(self.strain))
+        curve = np.column_stack([self.strain, self.stress])
+        if len(curve) < 2 or curve[0].any() or (np.diff(curve, axis=0) <= 0).any():
+            raise InputError.single(
+                "FoamMaterial.stress", got=curve.tolist(), expected="rising curve from (0, 0)"
+            )
+        positive(self, "young")
+        in_range(self, "poisson", -0.99, 0.499)
+        in_range(self, "friction", 0.0, 2.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Foam:
+    """A closed cushion surface, outward normals, with the named curves attached to it.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64 [m]; faces : (m, 3) int64
+    curves : name -> (k, 3) float64 [m]   wires in the trenches, frame curves below
+    """
+
+    vertices: FloatArray
+    faces: IntArray
+    material: FoamMaterial
+    curves: MappingProxyType[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __post_init__(self) -> None:
+        floats(self, "vertices", None, 3)
+        ints(self, "faces", None, 3, below=len(self.vertices))

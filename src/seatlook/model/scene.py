@@ -1,0 +1,133 @@
+"""One scene: what is sewn, on which foam, how it is judged and looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.model._check import FloatArray, floats, positive
+from seatlook.model.cover import Stage
+from seatlook.model.light import Camera, Rig
+from seatlook.model.material import Appearance, Foam, Material
+from seatlook.model.pattern import Pattern
+
+CurvatureMode = Literal["paper", "tensor"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pose:
+    """Where a flat panel starts: ``x = rotation @ (u, v, 0) + translation``.
+
+    Parameters
+    ----------
+    rotation : (3, 3) float64, proper orthogonal; translation : (3,) float64 [m]
+    """
+
+    rotation: FloatArray
+    translation: FloatArray
+
+    def __post_init__(self) -> None:
+        floats(self, "rotation", 3, 3)
+        floats(self, "translation", 3)
+        error = np.abs(self.rotation @ self.rotation.T - np.eye(3)).max()
+        if error > 1e-6 or np.linalg.det(self.rotation) < 0:
+            raise InputError.single(
+                "Pose.rotation", got=self.rotation.tolist(), expected="a proper rotation matrix"
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hook:
+    """A sew line pulled to a wire.
+
+    Parameters
+    ----------
+    line : name of a seam, or ``PANEL/LINE`` for an internal line
+    wire : name of a curve of the foam
+    stage : stage in which it is pulled in
+    """
+
+    name: str
+    line: str
+    wire: str
+    stage: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Frame:
+    """Free edges, one after the other, pulled to a curve below the foam."""
+
+    name: str
+    edges: tuple[str, ...]
+    curve: str
+    stage: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ZoneBox:
+    """A user's rectangle in pattern coordinates [m] with a visibility class."""
+
+    name: str
+    panel: str
+    low: FloatArray
+    high: FloatArray
+    visibility: Literal["A", "B", "C"] = "A"
+
+    def __post_init__(self) -> None:
+        floats(self, "low", 2)
+        floats(self, "high", 2)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit:
+    """A limit of ``[accept]``: a zone's name or class, the measure, the largest good value."""
+
+    zone: str
+    measure: str
+    maximum: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """Everything a run needs, checked and in SI units.
+
+    Parameters
+    ----------
+    digest : sha256 of the scene file and of every file it names
+    materials : panel name -> Material
+    placement : panel name -> Pose; a panel without one gets an automatic pose
+    element_size : float [m]; smallest_notch : float [m], smaller cuts are ignored
+    c_threshold : float [1/m]
+    textures : name -> Appearance, or None for the panels' own materials
+    """
+
+    name: str
+    path: Path | None
+    digest: str
+    pattern: Pattern
+    foam: Foam
+    materials: MappingProxyType[str, Material]
+    placement: MappingProxyType[str, Pose]
+    stages: tuple[Stage, ...]
+    hooks: tuple[Hook, ...] = ()
+    frames: tuple[Frame, ...] = ()
+    rigs: tuple[Rig, ...]
+    cameras: tuple[Camera, ...]
+    textures: MappingProxyType[str, Appearance | None] = field(
+        default_factory=lambda: MappingProxyType({"as built": None})
+    )
+    boxes: tuple[ZoneBox, ...] = ()
+    limits: tuple[Limit, ...] = ()
+    element_size: float
+    smallest_notch: float = 0.005
+    seed: int = 0
+    curvature: CurvatureMode = "tensor"
+    c_threshold: float = 20.0
+
+    def __post_init__(self) -> None:
+        positive(self, "element_size", "c_threshold")
