@@ -1,0 +1,5 @@
+"""The gallery page: one static folder that opens without a server and without a network."""
+
+from seatlook.report.data import Check, MapView, PageData, RigHead, Table
+
+__all__ = ["Check", "MapView", "PageData", "RigHead", "Table"]

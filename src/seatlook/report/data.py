@@ -1,0 +1,145 @@
+"""What the gallery page shows, as plain values: no arrays, no scene, no solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from types import MappingProxyType
+
+from seatlook.errors import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigHead:
+    """Head of one column of the grid.
+
+    Parameters
+    ----------
+    ev100 : float               exposure of every picture in the column
+    illuminance : float [lux]   on a grey card at the seat
+    lights : one short description per light, such as "sun, 97 klx, elevation 70 deg"
+    """
+
+    name: str
+    ev100: float
+    illuminance: float
+    lights: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapView:
+    """A wrinkle index drawn on the cover from the gallery's camera.
+
+    Parameters
+    ----------
+    image : path relative to the page
+    low, high : float [unit]    values at the two ends of ``colours``
+    colours : "#rrggbb" at equal steps from ``low`` to ``high``, at least two
+    meaning : one sentence for a reader who does not know the equation
+    """
+
+    name: str
+    image: str
+    low: float
+    high: float
+    colours: tuple[str, ...]
+    unit: str = "1"
+    meaning: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.low < self.high:
+            raise InputError.single(
+                f"map {self.name}", got=f"{self.low:g} to {self.high:g}", expected="low < high"
+            )
+        if len(self.colours) < 2:
+            raise InputError.single(
+                f"map {self.name}.colours", got=self.colours, expected="two colours or more"
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Table:
+    """Heads (with the unit, if any) and rows; numbers are formatted and aligned by the page."""
+
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str | float | int | None, ...], ...]
+
+    def __post_init__(self) -> None:
+        for number, row in enumerate(self.rows):
+            if len(row) != len(self.heads):
+                raise InputError.single(
+                    f"table row {number}",
+                    got=f"{len(row)} cells",
+                    expected=f"{len(self.heads)}: {', '.join(self.heads)}",
+                )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Check:
+    """One condition of "converged" or one limit of [accept]: a value, its limit, kept or not."""
+
+    name: str
+    value: str
+    limit: str
+    kept: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PageData:
+    """Everything on the page; ``write_page`` turns it into ``index.html``.
+
+    Parameters
+    ----------
+    title : name of the scene
+    camera : name of the view all pictures and maps are taken from
+    size : (width, height) of every picture in pixels
+    pixels_per_degree : float       of that camera, so a reader can check the viewing distance
+    textures : rows of the grid, in order
+    rigs : columns of the grid, in order
+    pictures : (texture, rig name) -> path relative to the page; one for every cell
+    maps : W1, W2, W_stretch, W_compression, ...
+    zones : one row per zone
+    parameters : heads such as ("parameter", "value", "unit", "source")
+    provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
+    checks : solver conditions and accept limits
+    warnings : sentences that must be read before the pictures are believed
+    history : column -> values, one per solver step; "residual" and "gap" are charted if present
+    """
+
+    title: str
+    camera: str
+    size: tuple[int, int]
+    pixels_per_degree: float
+    textures: tuple[str, ...]
+    rigs: tuple[RigHead, ...]
+    pictures: MappingProxyType[tuple[str, str], str]
+    maps: tuple[MapView, ...]
+    zones: Table
+    parameters: Table
+    provenance: MappingProxyType[str, str]
+    checks: tuple[Check, ...] = ()
+    warnings: tuple[str, ...] = ()
+    history: MappingProxyType[str, tuple[float, ...]] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
+
+    def __post_init__(self) -> None:
+        cells = {(texture, rig.name) for texture in self.textures for rig in self.rigs}
+        if not cells or cells != set(self.pictures):
+            odd = sorted(map(str, cells ^ set(self.pictures)))
+            raise InputError.single(
+                "PageData.pictures",
+                got=f"missing or extra: {', '.join(odd) or 'no cell at all'}",
+                expected="one for every texture and rig",
+            )
+        for image in self.images:
+            path = PurePosixPath(image)
+            if path.is_absolute() or ".." in path.parts or ":" in image or "\\" in image:
+                raise InputError.single(
+                    "image path", got=image, expected="a path relative to the page, below it"
+                )
+
+    @property
+    def images(self) -> tuple[str, ...]:
+        """Every image the page shows."""
+        return (*self.pictures.values(), *(view.image for view in self.maps))
