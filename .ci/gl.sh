@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Give the environment a software GL library unless one is there: the vtk wheel carries none.
+# As root by the package manager; otherwise unpacked below the environment, where it is preloaded.
+# usage: gl.sh VENV
+set -euo pipefail
+venv=$1
+
+works() { "$venv/bin/seatlook" doctor >/dev/null 2>&1; }
+works && exit 0
+
+if ! command -v apt-get >/dev/null || ! command -v dpkg >/dev/null; then
+    cat >&2 <<'END'
+No software GL library is found, and this system has no apt-get to fetch one.
+Install Mesa's OSMesa library (libOSMesa.so.8) or Mesa's EGL (libEGL.so.1 with llvmpipe)
+by your system's package manager, then run make again.
+END
+    exit 3
+fi
+
+if [ "$(id -u)" = 0 ]; then
+    echo "installing the software GL library (libosmesa6)" >&2
+    apt-get update -qq
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends libosmesa6 \
+        >/dev/null
+else
+    echo "unpacking the software GL library (libosmesa6) below $venv" >&2
+    target=$(cd "$venv" && pwd)/lib/seatlook-gl
+    work=$(mktemp -d)
+    trap 'rm -rf "$work"' EXIT
+    mkdir -p "$work/lists/partial" "$work/archives/partial" "$target"
+    # Own state and cache, so that no right beyond reading the system's configuration is needed.
+    own=(-qq -o "Dir::State::Lists=$work/lists" -o "Dir::Cache=$work" -o "APT::Sandbox::User="
+        -o Debug::NoLocking=1)
+    apt-get "${own[@]}" update
+    # A simulated installation names exactly the packages that are not there yet.
+    packages=$(apt-get "${own[@]}" --simulate --no-install-recommends install libosmesa6 |
+        awk '$1 == "Inst" {print $2}')
+    (cd "$work" && apt-get "${own[@]}" download libosmesa6 $packages)
+    for package in "$work"/*.deb; do
+        dpkg -x "$package" "$target"
+    done
+fi
+
+if ! works; then
+    "$venv/bin/seatlook" doctor >&2 || true
+    echo "the software GL library was installed but does not work; see the lines above" >&2
+    exit 3
+fi

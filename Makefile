@@ -1,0 +1,61 @@
+# Every target sets up what it needs; once set up, that costs nothing.
+#   make demo       sew, hook, cover, judge and draw the demo seat; leaves out/demo/index.html
+#   make test       the tests that take under 20 s each
+#   make validate   the long ones: convergence, fuzzing, path tracing
+#   make browser    the gallery page in headless Chromium
+#   make check      style, types, import contract, spelling
+#   make bench      timings
+VENV ?= .venv
+OUT ?= out/demo
+BIN := $(VENV)/bin
+PYTEST := $(BIN)/python -m pytest -q
+TESTS := --doctest-modules tests src/seatlook
+
+.PHONY: demo test validate browser check format bench clean
+.DELETE_ON_ERROR:
+
+demo: $(VENV)/.gl
+	$(BIN)/seatlook demo --out $(OUT)
+
+test: $(VENV)/.gl $(VENV)/.dev
+	$(PYTEST) -m "not validate and not browser and not bench" $(TESTS)
+
+validate: $(VENV)/.gl $(VENV)/.dev
+	$(PYTEST) -m validate --timeout 3600 tests
+
+browser: $(VENV)/.gl $(VENV)/.dev $(VENV)/.browser
+	$(PYTEST) -m browser tests
+
+bench: $(VENV)/.gl $(VENV)/.dev
+	$(PYTEST) -m bench --timeout 3600 tests
+
+check: $(VENV)/.dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/codespell
+
+format: $(VENV)/.dev
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+clean:
+	rm -rf $(VENV) out
+
+# The time of each stamp is the time of the last successful installation.
+$(VENV)/.packages: pyproject.toml .ci/environment.sh
+	bash .ci/environment.sh $(VENV)
+	@touch $@
+
+$(VENV)/.dev: $(VENV)/.packages
+	$(BIN)/python -m pip --disable-pip-version-check install --quiet --group dev
+	@touch $@
+
+$(VENV)/.gl: $(VENV)/.packages .ci/gl.sh
+	bash .ci/gl.sh $(VENV)
+	@touch $@
+
+$(VENV)/.browser: $(VENV)/.dev .ci/browser.sh
+	bash .ci/browser.sh $(VENV)
+	@touch $@
