@@ -1,0 +1,39 @@
+"""Triangle meshes as plain arrays; no core types, so that every other layer may use it."""
+
+from seatlook.mesh.outline import (
+    MAX_HEXAGONAL_BIAS,
+    MIN_ANGLE_DEG,
+    QUANTILE_ANGLE_DEG,
+    triangulate,
+)
+from seatlook.mesh.surface import (
+    angles,
+    arc_length,
+    boundary_loops,
+    edge_lengths,
+    edges,
+    face_areas,
+    face_normals,
+    face_vectors,
+    hexagonal_bias,
+    resample,
+    vertex_normals,
+)
+
+__all__ = [
+    "MAX_HEXAGONAL_BIAS",
+    "MIN_ANGLE_DEG",
+    "QUANTILE_ANGLE_DEG",
+    "angles",
+    "arc_length",
+    "boundary_loops",
+    "edge_lengths",
+    "edges",
+    "face_areas",
+    "face_normals",
+    "face_vectors",
+    "hexagonal_bias",
+    "resample",
+    "triangulate",
+    "vertex_normals",
+]

@@ -1,0 +1,298 @@
+"""Meshing a flat outline with triangles that prefer no direction."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from scipy.spatial import Delaunay, cKDTree
+
+from seatlook.errors import InputError, Problem
+from seatlook.mesh.surface import (
+    FloatArray,
+    IntArray,
+    angles,
+    edges,
+    face_areas,
+    face_vectors,
+    hexagonal_bias,
+)
+
+# Gates: a triangulation that misses one is refused, because W2 on it would be wrong.
+MIN_ANGLE_DEG = 20.0
+QUANTILE_ANGLE_DEG = 30.0
+MAX_HEXAGONAL_BIAS = 0.1
+
+_JITTER = 0.5  # of h, to each side; less leaves a six-fold lattice that steers buckles
+_CLEARANCE = 0.55  # of h; free points closer than this to a neighbour or a line are dropped
+_SMOOTHING_ROUNDS = 5
+_LATTICE = 0.865  # of h; thinning widens the mesh by the inverse (measured 1.156)
+_REPAIR_ROUNDS = 12
+_ATTEMPTS = 6
+
+
+def triangulate(
+    boundary: FloatArray,
+    element_size: float,
+    *,
+    lines: Sequence[FloatArray] = (),
+    seed: int = 0,
+) -> tuple[FloatArray, IntArray]:
+    """Mesh a flat outline with nearly equilateral triangles that prefer no direction.
+
+    Jittered lattice, thinned at the outline, Delaunay, centroid smoothing, repair by Delaunay
+    refinement (Ruppert 1995) where angles are small.
+
+    Parameters
+    ----------
+    boundary : (b, 2) float64 [m]
+        Outline, counter-clockwise, first vertex not repeated, sampled at about ``element_size``.
+    element_size : float [m]
+        Mean edge length h aimed at.
+    lines : polylines (k, 2) [m]
+        Sampled likewise; an end on the outline or on another line coincides with a point there.
+    seed : int
+        The same arguments give the same mesh.
+
+    Returns
+    -------
+    points : (n, 2) float64 [m]
+        The outline first, in its order, then the points of ``lines``, then the free ones.
+    faces : (m, 3) int64
+        Counter-clockwise; every segment of outline and lines is an edge.
+
+    Raises
+    ------
+    InputError
+        The outline crosses itself or runs clockwise; or no mesh passes the gates (smallest angle
+        20 degrees, 1 % quantile 30, hexagonal bias 0.1), with the place and the reason.
+
+    Examples
+    --------
+    >>> from seatlook.mesh import angles, triangulate
+    >>> t = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    >>> points, faces = triangulate(np.column_stack([np.cos(t), np.sin(t)]), 0.1)
+    >>> bool(np.degrees(angles(points, faces)).min() > 20)
+    True
+    """
+    region = _region(boundary, element_size)
+    fixed, segments = _constraints(boundary, lines, element_size)
+    problems: list[Problem] = []
+    for attempt in range(_ATTEMPTS):
+        rng = np.random.default_rng((seed, attempt))
+        free = _scatter(region, fixed, segments, _LATTICE * element_size, rng)
+        points, faces = _relax(region, fixed, segments, free, element_size)
+        problems = _misses(points, faces, segments, len(fixed))
+        if not problems:
+            return points, faces
+    raise InputError(problems)
+
+
+def _region(boundary: FloatArray, element_size: float) -> shapely.Polygon:
+    """Return the outline as a prepared polygon after checking it."""
+    if not np.isfinite(boundary).all():
+        raise InputError.single("outline", got="nan or inf", expected="finite numbers")
+    region = shapely.Polygon(boundary)
+    if not region.is_valid:
+        raise InputError.single(
+            "outline", got=shapely.is_valid_reason(region), expected="a simple closed curve"
+        )
+    if not shapely.is_ccw(region.exterior):
+        raise InputError.single("outline", got="clockwise", expected="counter-clockwise")
+    if not element_size > 0:
+        raise InputError.single("element_size", got=element_size, expected="a number above 0")
+    shapely.prepare(region)
+    return region
+
+
+def _constraints(
+    boundary: FloatArray, lines: Sequence[FloatArray], element_size: float
+) -> tuple[FloatArray, IntArray]:
+    """Merge outline and lines into points (k, 2) and the segments (s, 2) to keep."""
+    b = len(boundary)
+    points = [np.asarray(row, dtype=np.float64) for row in boundary]
+    segments = [(i, (i + 1) % b) for i in range(b)]
+    for line in lines:
+        indices = []
+        for point in np.asarray(line, dtype=np.float64):
+            distance = np.linalg.norm(np.array(points) - point, axis=1)
+            nearest = int(distance.argmin())
+            if distance[nearest] > 1e-6 * element_size:
+                nearest = len(points)
+                points.append(point)
+            indices.append(nearest)
+        segments += itertools.pairwise(indices)
+    return np.array(points), np.array(segments, dtype=np.int64)
+
+
+def _scatter(
+    region: shapely.Polygon,
+    fixed: FloatArray,
+    segments: IntArray,
+    h: float,
+    rng: np.random.Generator,
+) -> FloatArray:
+    """Return a jittered, randomly turned lattice inside the region, clear of all fixed lines."""
+    x0, y0, x1, y1 = region.bounds
+    centre, radius = np.array([x0 + x1, y0 + y1]) / 2, np.hypot(x1 - x0, y1 - y0) / 2 + h
+    rise = h * np.sqrt(3) / 2
+    i, j = (a.ravel() for a in np.mgrid[-radius:radius:h, -radius:radius:rise])
+    i = i + (np.round(j / rise) % 2) * h / 2
+    lattice = np.column_stack([i, j]) + rng.uniform(-_JITTER, _JITTER, (len(i), 2)) * h
+    turn = rng.uniform(0, np.pi / 3)
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    free = centre + lattice @ rotation.T
+    free = free[shapely.contains_xy(region, free)]
+    walls = shapely.multilinestrings(fixed[segments])
+    shapely.prepare(walls)
+    free = free[~shapely.dwithin(walls, shapely.points(free), _CLEARANCE * h)]
+    return _thin(free, _CLEARANCE * h)
+
+
+def _thin(free: FloatArray, clearance: float) -> FloatArray:
+    """Drop points until none is closer to another than ``clearance``."""
+    keep = np.ones(len(free), dtype=bool)
+    if len(free):
+        for i, j in cKDTree(free).query_pairs(clearance, output_type="ndarray"):
+            if keep[i] and keep[j]:
+                keep[j] = False
+    return free[keep]
+
+
+def _relax(
+    region: shapely.Polygon, fixed: FloatArray, segments: IntArray, free: FloatArray, h: float
+) -> tuple[FloatArray, IntArray]:
+    """Smooth, then repair the small angles that are left; Delaunay all along."""
+    k = len(fixed)
+    points, faces = _delaunay(region, fixed, segments, free)
+    for _ in range(_SMOOTHING_ROUNDS):
+        points, faces = _delaunay(region, fixed, segments, _centroids(points, faces)[k:])
+    for _ in range(_REPAIR_ROUNDS):
+        smallest = np.degrees(angles(points, faces)).min(axis=1)
+        bad = smallest < QUANTILE_ANGLE_DEG
+        if not bad.any():
+            break
+        free = _repair(points, faces[bad], k, h, region)
+        points, faces = _delaunay(region, fixed, segments, free)
+        points, faces = _delaunay(region, fixed, segments, _centroids(points, faces)[k:])
+    return points, faces
+
+
+def _delaunay(
+    region: shapely.Polygon, fixed: FloatArray, segments: IntArray, free: FloatArray
+) -> tuple[FloatArray, IntArray]:
+    """Triangulate inside the region; free points that keep a segment from being an edge go."""
+    while True:
+        points = np.concatenate([fixed, free])
+        faces = np.asarray(Delaunay(points).simplices, dtype=np.int64)
+        faces = faces[shapely.contains_xy(region, points[faces].mean(axis=1))]
+        turned = face_vectors(points, faces)[:, 2] < 0
+        faces[turned] = faces[turned, ::-1]
+        missing = _missing(segments, faces, len(points))
+        if not len(missing) or not len(free):
+            return points, faces
+        ends = fixed[missing]
+        middle, radius = ends.mean(axis=1), np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / 2
+        inside = cKDTree(free).query_ball_point(middle, radius * (1 + 1e-9))
+        encroaching = np.unique(np.concatenate([np.array(i, dtype=np.int64) for i in inside]))
+        if not len(encroaching):
+            return points, faces
+        free = np.delete(free, encroaching, axis=0)
+
+
+def _missing(segments: IntArray, faces: IntArray, n: int) -> IntArray:
+    """Return the segments that are no edge of the faces."""
+    present = edges(faces) @ [n, 1]
+    return np.asarray(segments[~np.isin(np.sort(segments, axis=1) @ [n, 1], present)])
+
+
+def _centroids(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Move each vertex to the area-weighted mean of its faces' centroids."""
+    area = face_areas(points, faces)
+    weight = np.bincount(faces.ravel(), np.repeat(area, 3), minlength=len(points))
+    moment = np.repeat(area[:, None] * points[faces].mean(axis=1), 3, axis=0)
+    total = np.column_stack(
+        [np.bincount(faces.ravel(), column, minlength=len(points)) for column in moment.T]
+    )
+    weight[weight == 0] = np.inf  # a point outside every face is dropped by the next round
+    return np.asarray(total / weight[:, None])
+
+
+def _repair(
+    points: FloatArray, bad: IntArray, k: int, h: float, region: shapely.Polygon
+) -> FloatArray:
+    """Drop a free end of short edges, add circumcentres of large triangles; return free points."""
+    p = points[bad]
+    lengths = np.linalg.norm(np.roll(p, -1, axis=1) - p, axis=2)
+    radius = lengths.prod(axis=1) / (4 * face_areas(points, bad))
+    short = lengths.argmin(axis=1)
+    rows = np.arange(len(bad))
+    ends = np.maximum(bad[rows, short], bad[rows, (short + 1) % 3])
+    small = (radius < 0.75 * h) & (ends >= k)
+    kept = np.ones(len(points), dtype=bool)
+    kept[ends[small]] = False
+    added = _circumcentres(p[~small])
+    added = added[shapely.contains_xy(region, added)]
+    if len(added):
+        distance, _ = cKDTree(points[kept]).query(added)
+        added = _thin(added[distance > 0.45 * h], 0.45 * h)
+    return np.concatenate([points[k:][kept[k:]], added])
+
+
+def _circumcentres(p: FloatArray) -> FloatArray:
+    """Return the circumcentre (m, 2) of triangles (m, 3, 2)."""
+    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    uu, vv = (u**2).sum(axis=1), (v**2).sum(axis=1)
+    twice = 2 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    offset = np.column_stack([uu * v[:, 1] - vv * u[:, 1], vv * u[:, 0] - uu * v[:, 0]])
+    return np.asarray(p[:, 0] + offset / twice[:, None])
+
+
+def _misses(points: FloatArray, faces: IntArray, segments: IntArray, k: int) -> list[Problem]:
+    """Return which gates the mesh misses."""
+    missing = _missing(segments, faces, len(points))
+    if len(missing):
+        x, y = 1e3 * points[missing[0]].mean(axis=0)
+        return [
+            Problem(
+                key="outline",
+                got=f"{len(missing)} segments that cannot be edges, first at ({x:.1f}, {y:.1f}) mm",
+                expected="points spaced no wider than the gap to the line opposite",
+            )
+        ]
+    found = np.degrees(angles(points, faces)).min(axis=1)
+    worst, low = int(found.argmin()), float(np.quantile(found, 0.01))
+    x, y = 1e3 * points[faces[worst]].mean(axis=0)
+    problems = []
+    if found[worst] < MIN_ANGLE_DEG or low < QUANTILE_ANGLE_DEG:
+        problems.append(
+            Problem(
+                key="mesh angles",
+                got=f"{found[worst]:.1f} deg at ({x:.1f}, {y:.1f}) mm, 1 % quantile {low:.1f} deg",
+                expected=f"at least {MIN_ANGLE_DEG:g} and {QUANTILE_ANGLE_DEG:g} deg",
+                hint="sharp corner, notch or uneven sampling of the outline",
+            )
+        )
+    free = _open_edges(points, faces, k)
+    # A mean of N random directions is itself about 1/sqrt(N): small meshes get that on top.
+    allowed = MAX_HEXAGONAL_BIAS + 2 / np.sqrt(max(len(free), 1))
+    if len(free) and hexagonal_bias(points, free) > allowed:
+        problems.append(
+            Problem(
+                key="mesh hexagonal bias",
+                got=f"{hexagonal_bias(points, free):.2f}",
+                expected=f"at most {allowed:.2f}",
+            )
+        )
+    return problems
+
+
+def _open_edges(points: FloatArray, faces: IntArray, k: int) -> IntArray:
+    """Return the edges at least three rings away from fixed points, which steer their rows."""
+    near = np.arange(len(points)) < k
+    for _ in range(3):
+        near[faces[near[faces].any(axis=1)]] = True
+    pairs = edges(faces)
+    return np.asarray(pairs[~near[pairs].any(axis=1)])

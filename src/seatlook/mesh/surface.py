@@ -1,0 +1,144 @@
+"""Topology, normals, angles and lengths of triangle meshes and polylines."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from seatlook.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+def edges(faces: IntArray) -> IntArray:
+    """Return the undirected edges (e, 2) of ``faces`` (m, 3), each once, smaller index first."""
+    return np.unique(np.sort(_half_edges(faces), axis=1), axis=0)
+
+
+def boundary_loops(faces: IntArray) -> list[IntArray]:
+    """Return the closed boundary curves as vertex indices, each with the surface on its left.
+
+    Examples
+    --------
+    >>> [loop.tolist() for loop in boundary_loops(np.array([[0, 1, 2], [0, 2, 3]]))]
+    [[0, 1, 2, 3]]
+    """
+    half = _half_edges(faces)
+    n = int(faces.max(initial=-1)) + 1
+    alone = half[~np.isin(half @ [n, 1], half @ [1, n])]
+    if len(np.unique(alone[:, 0])) != len(alone):
+        raise InputError.single(
+            "faces", got="boundary curves that touch in a vertex", expected="a manifold surface"
+        )
+    following = dict(alone.tolist())
+    loops = []
+    while following:
+        start, here = following.popitem()
+        loop = [start]
+        while here != start:
+            loop.append(here)
+            here = following.pop(here)
+        first = loop.index(min(loop))
+        loops.append(np.array(loop[first:] + loop[:first], dtype=np.int64))
+    return sorted(loops, key=lambda loop: int(loop[0]))
+
+
+def _half_edges(faces: IntArray) -> IntArray:
+    """Return the directed edges (3m, 2), in the order of the faces."""
+    return np.asarray(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2))
+
+
+def edge_lengths(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Return the length (e,) [m] of each edge, in the order of ``edges(faces)``."""
+    ends = points[edges(faces)]
+    return np.asarray(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
+
+
+def face_vectors(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Return the area vectors (m, 3) [m2]: normal times area, flat meshes along +z.
+
+    Examples
+    --------
+    >>> face_vectors(np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]), np.array([[0, 1, 2]]))
+    array([[0., 0., 1.]])
+    """
+    if points.shape[1] == 2:
+        points = np.column_stack([points, np.zeros(len(points))])
+    p = points[faces]
+    return np.asarray(0.5 * np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]))
+
+
+def face_areas(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Return the area (m,) [m2] of each face, never negative."""
+    return np.asarray(np.linalg.norm(face_vectors(points, faces), axis=1))
+
+
+def face_normals(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Return the unit normal (m, 3) of each face; faces without area give nan."""
+    vectors = face_vectors(points, faces)
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
+
+
+def vertex_normals(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Return unit normals (n, 3), weighted by the angle of each face (Thürmer, Wüthrich 1998).
+
+    The angle weights make the result independent of how a smooth surface is triangulated.
+    """
+    weighted = face_normals(points, faces)[:, None] * angles(points, faces)[:, :, None]
+    normals = np.zeros((len(points), 3))
+    np.add.at(normals, faces, weighted)
+    return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
+
+
+def angles(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Return the inner angles (m, 3) [rad] at the three corners of each face, in 2-D or 3-D."""
+    p = points[faces]
+    ahead = np.roll(p, -1, axis=1) - p
+    back = np.roll(p, 1, axis=1) - p
+    cosine = np.einsum("mkd,mkd->mk", ahead, back)
+    sine = np.sqrt(
+        np.maximum(
+            np.einsum("mkd,mkd->mk", ahead, ahead) * np.einsum("mkd,mkd->mk", back, back)
+            - cosine**2,
+            0.0,
+        )
+    )
+    return np.asarray(np.arctan2(sine, cosine))
+
+
+def hexagonal_bias(points: FloatArray, pairs: IntArray) -> float:
+    """Return ``|mean exp(6 i theta)|`` over the edge directions of a flat mesh, 0 to 1.
+
+    1 is a perfect lattice of equilateral triangles, which steers buckles; 0 has no preference.
+    """
+    along = points[pairs[:, 1]] - points[pairs[:, 0]]
+    theta = np.arctan2(along[:, 1], along[:, 0])
+    return float(np.abs(np.exp(6j * theta).mean()))
+
+
+def arc_length(polyline: FloatArray) -> FloatArray:
+    """Return the length run through (k,) [m] at each point of an open polyline (k, d)."""
+    steps = np.linalg.norm(np.diff(polyline, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def resample(polyline: FloatArray, spacing: float) -> FloatArray:
+    """Return points of equal arc length on an open polyline (k, d), both ends kept.
+
+    The step is the length divided by the nearest whole number of ``spacing`` (at least one).
+
+    Examples
+    --------
+    >>> resample(np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]]), 0.9)[:, 0]
+    array([0., 1., 2., 3., 3.])
+    """
+    s = arc_length(polyline)
+    if not (spacing > 0 and s[-1] > 0):
+        raise InputError.single(
+            "resample", got=f"length {s[-1]:g}, spacing {spacing:g}", expected="numbers above 0"
+        )
+    at = np.linspace(0.0, s[-1], max(1, round(s[-1] / spacing)) + 1)
+    points = np.column_stack([np.interp(at, s, column) for column in polyline.T])
+    points[[0, -1]] = polyline[[0, -1]]  # bit for bit, so that neighbours share their corners
+    return points
