@@ -102,8 +102,10 @@ class PageData:
     parameters : heads such as ("parameter", "value", "unit", "source")
     provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
     checks : solver conditions and accept limits
+    status : the solver's own word, such as "converged"
     warnings : sentences that must be read before the pictures are believed
-    history : column -> values, one per solver step; "residual" and "gap" are charted if present
+    history : column -> values, one per solver step; "time" is the horizontal axis if present
+    files : paths of what else lies in the folder, such as "zones.csv"
     """
 
     title: str
@@ -117,11 +119,13 @@ class PageData:
     zones: Table
     parameters: Table
     provenance: MappingProxyType[str, str]
+    status: str
     checks: tuple[Check, ...] = ()
     warnings: tuple[str, ...] = ()
     history: MappingProxyType[str, tuple[float, ...]] = field(
         default_factory=lambda: MappingProxyType({})
     )
+    files: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         cells = {(texture, rig.name) for texture in self.textures for rig in self.rigs}
@@ -132,11 +136,11 @@ class PageData:
                 got=f"missing or extra: {', '.join(odd) or 'no cell at all'}",
                 expected="one for every texture and rig",
             )
-        for image in self.images:
-            path = PurePosixPath(image)
-            if path.is_absolute() or ".." in path.parts or ":" in image or "\\" in image:
+        for name in (*self.images, *self.files):
+            path = PurePosixPath(name)
+            if path.is_absolute() or ".." in path.parts or ":" in name or "\\" in name:
                 raise InputError.single(
-                    "image path", got=image, expected="a path relative to the page, below it"
+                    "path on the page", got=name, expected="relative to the page and below it"
                 )
 
     @property

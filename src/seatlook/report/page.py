@@ -1,0 +1,83 @@
+"""Write the gallery page: one HTML file with its style and script inside, images beside it."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from seatlook import files
+from seatlook.errors import InputError
+from seatlook.report.chart import HEIGHT, WIDTH, bar_ticks, history_charts, number
+from seatlook.report.data import PageData
+
+_TEMPLATES = Path(__file__).parent / "templates"
+
+
+def write_page(data: PageData, folder: Path) -> Path:
+    """Write ``folder/index.html`` and return its path.
+
+    Parameters
+    ----------
+    data : what to show
+    folder : where the images of ``data`` already are
+
+    Raises
+    ------
+    InputError
+        An image or file that the page would show is not in ``folder``.
+
+    Notes
+    -----
+    The page asks nothing of the network: its content policy admits its own style and script, by
+    their digests, and images beside it.
+    """
+    missing = [name for name in (*data.images, *data.files) if not (folder / name).is_file()]
+    if missing:
+        raise InputError.single(
+            "gallery page",
+            got=f"no file {', '.join(missing)}",
+            expected="every picture and file written before the page",
+            file=folder,
+        )
+    path = folder / "index.html"
+    files.write_text(path, page_html(data))
+    return path
+
+
+def page_html(data: PageData) -> str:
+    """Return the page as text."""
+    style = (_TEMPLATES / "page.css").read_text(encoding="utf-8")
+    script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
+    environment = Environment(
+        loader=FileSystemLoader(_TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["number"] = number
+    return environment.get_template("page.html.j2").render(
+        page=data,
+        policy=_policy(style, script),
+        style=Markup(style),
+        script=Markup(script),
+        charts=history_charts(data.history),
+        bar_ticks=bar_ticks,
+        chart_size=(WIDTH, HEIGHT),
+    )
+
+
+def _policy(style: str, script: str) -> str:
+    """Content policy: nothing but the page's own style, script and images."""
+    return (
+        "default-src 'none'; img-src 'self' file:; base-uri 'none'; form-action 'none'; "
+        f"style-src '{_digest(style)}'; script-src '{_digest(script)}'"
+    )
+
+
+def _digest(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
