@@ -1,0 +1,27 @@
+"""Files in and out; one module per format, loaded when its first name is used."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+# name -> module
+_PUBLIC: dict[str, str] = {
+    "list_foam_materials": "material",
+    "list_materials": "material",
+    "materials_dir": "material",
+    "read_foam_material": "material",
+    "read_material": "material",
+}
+
+__all__ = list(_PUBLIC)
+
+
+def __getattr__(name: str) -> Any:
+    if name in _PUBLIC:
+        return getattr(importlib.import_module(f"seatlook.io.{_PUBLIC[name]}"), name)
+    raise AttributeError(f"module 'seatlook.io' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *_PUBLIC]

@@ -1,0 +1,246 @@
+"""Materials: ``materials/<name>.toml`` with [fabric], [appearance] and [source], or [foam]."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from seatlook.errors import InputError, did_you_mean
+from seatlook.io._schema import MM, Array, Kind, Number, Table, Text, read_table, shown
+from seatlook.io._toml import Document, Key, read_document
+from seatlook.model import Appearance, Curve, Fabric, FoamMaterial, Material
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _StiffnessCurve:
+    """A number, or ``{ strain = [0, ...], stiffness = [...] }``."""
+
+    required: bool = False
+    default: None = None
+
+    def read(self, document: Document, key: Key, value: Any) -> Curve | None:
+        if not isinstance(value, dict):
+            stiffness = Number(above=0).read(document, key, value)
+            return None if stiffness is None else Curve.linear(stiffness)
+        knots = Array(shape=(None,), low=0.0, required=True)
+        row = Table({"strain": knots, "stiffness": knots}).read(document, key, value)
+        if row["strain"] is None or row["stiffness"] is None:
+            return None
+        try:
+            return Curve(strain=row["strain"], stiffness=row["stiffness"])
+        except InputError as error:
+            document.note(key, error)
+            return None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Colour:
+    """Three linear numbers from 0 to 1, or ``"#rrggbb"`` in sRGB."""
+
+    required: bool = False
+    default: None = None
+
+    def read(self, document: Document, key: Key, value: Any) -> Any:
+        if not isinstance(value, str):
+            return Array(shape=(3,), low=0.0, high=1.0).read(document, key, value)
+        if not re.fullmatch(r"#[0-9a-fA-F]{6}", value):
+            document.report(key, shown(value), '"#rrggbb" or three linear numbers from 0 to 1')
+            return None
+        return linear_from_srgb(np.array([int(value[i : i + 2], 16) for i in (1, 3, 5)]) / 255)
+
+
+_FABRIC: dict[str, Kind] = {
+    "thickness_mm": Number(above=0, high=20, scale=MM, required=True),
+    "density_kg_per_m2": Number(above=0, high=20, required=True),
+    "warp_n_per_m": _StiffnessCurve(required=True),
+    "weft_n_per_m": _StiffnessCurve(required=True),
+    "shear_n_per_m": _StiffnessCurve(required=True),
+    "poisson": Number(low=-2, high=2, required=True),
+    "compression_ratio": Number(above=0, high=1, required=True),
+    "bending_warp_n_m": Number(above=0, high=1, required=True),
+    "bending_weft_n_m": Number(above=0, high=1, required=True),
+    "bending_twist_n_m": Number(above=0, high=1, required=True),
+    "bending_poisson": Number(low=-2, high=2, required=True),
+    "c_threshold_per_mm": Number(above=0, scale=1 / MM),
+}
+_APPEARANCE: dict[str, Kind] = {
+    "albedo": _Colour(required=True),
+    "metalness": Number(low=0, high=1, default=0.0),
+    "roughness": Number(low=0.08, high=1, required=True),
+    "f0": Number(low=0, high=0.2, default=0.04),
+    "sheen": _Colour(),
+    "sheen_roughness": Number(low=0.4, high=1, default=0.5),
+    "coat": Number(low=0, high=1, default=0.0),
+    "coat_roughness": Number(low=0.08, high=1, default=0.3),
+    "anisotropy": Number(low=-1, high=1, default=0.0),
+    "texture": Text(choices=("none", "leather", "suede", "weave"), default="none"),
+    "texture_scale_mm": Number(above=0, high=100, scale=MM, default=1.0),
+    "texture_depth_mm": Number(low=0, high=10, scale=MM, default=0.0),
+}
+_FOAM: dict[str, Kind] = {
+    "strain": Array(shape=(None,), low=0.0, high=1.0, required=True),
+    "stress_kpa": Array(shape=(None,), low=0.0, scale=1e3, required=True),
+    "young_kpa": Number(above=0, scale=1e3, required=True),
+    "poisson": Number(low=-0.99, high=0.499, required=True),
+    "friction": Number(low=0, high=2, required=True),
+}
+
+
+def materials_dir() -> Path:
+    """Return the folder of the materials that come with seatlook.
+
+    An installed package carries it inside; an editable one has it beside ``src``.
+    """
+    package = Path(__file__).parents[1]
+    installed = package / "materials"
+    return installed if installed.is_dir() else package.parents[1] / "materials"
+
+
+def list_materials() -> tuple[str, ...]:
+    """Return the names of the cover materials that come with seatlook.
+
+    Examples
+    --------
+    >>> "black-leather" in list_materials()
+    True
+    """
+    return _names("fabric")
+
+
+def list_foam_materials() -> tuple[str, ...]:
+    """Return the names of the foams that come with seatlook."""
+    return _names("foam")
+
+
+def read_material(name_or_path: str | Path) -> Material:
+    """Read a cover material by name, or from a TOML file.
+
+    Parameters
+    ----------
+    name_or_path : a name of ``list_materials()``, or a path that ends in ``.toml``
+
+    Raises
+    ------
+    InputError
+        For an unknown name, and for every key that is unknown, missing, of the wrong type or out
+        of range; for a stiffness matrix that is not positive definite.
+
+    Examples
+    --------
+    >>> read_material("black-leather").fabric.thickness
+    0.0012
+    """
+    document = read_document(material_path(name_or_path))
+    row = read_table(
+        document,
+        {
+            "fabric": Table(_FABRIC, required=True),
+            "appearance": Table(_APPEARANCE, required=True),
+            "source": _source({**_FABRIC, **_APPEARANCE}),
+        },
+    )
+    document.finish()
+    fabric, look = row["fabric"], row["appearance"]
+    c_threshold = fabric.pop("c_threshold_per_mm")
+    with document.blame(("fabric",)):
+        made = Fabric(**{_without_unit(k): v for k, v in fabric.items()})
+    with document.blame(("appearance",)):
+        seen = Appearance(**{_without_unit(k): v for k, v in look.items() if v is not None})
+    document.finish()
+    return Material(
+        name=document.file.stem,
+        fabric=made,
+        appearance=seen,
+        c_threshold=c_threshold,
+        source=_given(row["source"]),
+    )
+
+
+def read_foam_material(name_or_path: str | Path) -> FoamMaterial:
+    """Read a foam by name, or from a TOML file with a [foam] table.
+
+    Raises
+    ------
+    InputError
+        As ``read_material``; also for a compression curve that does not rise from (0, 0).
+
+    Examples
+    --------
+    >>> read_foam_material("foam-seat").young
+    20000.0
+    """
+    document = read_document(material_path(name_or_path))
+    row = read_table(document, {"foam": Table(_FOAM, required=True), "source": _source(_FOAM)})
+    document.finish()
+    foam = row["foam"]
+    if len(foam["strain"]) != len(foam["stress_kpa"]):
+        document.report(
+            ("foam", "stress_kpa"),
+            f"{len(foam['stress_kpa'])} numbers",
+            f"{len(foam['strain'])}, one for each strain",
+        )
+    document.finish()
+    with document.blame(("foam",)):
+        material = FoamMaterial(
+            name=document.file.stem,
+            source=_given(row["source"]),
+            **{_without_unit(k): v for k, v in foam.items()},
+        )
+    document.finish()
+    return material
+
+
+def material_path(name_or_path: str | Path, *, beside: Path | None = None) -> Path:
+    """Return the file of a material: a supplied one, or a path seen from folder ``beside``.
+
+    Raises
+    ------
+    InputError
+        When the name is not one of the supplied materials.
+    """
+    text = str(name_or_path)
+    if text.endswith(".toml"):
+        return (beside or Path()) / text
+    path = materials_dir() / f"{text}.toml"
+    names = (*list_materials(), *list_foam_materials())
+    if text not in names:
+        raise InputError.single(
+            "material",
+            got=shown(text),
+            expected=f"one of {', '.join(names)}, or a path ending in .toml",
+            hint=did_you_mean(text, names),
+        )
+    return path
+
+
+def linear_from_srgb(encoded: Any) -> Any:
+    """Decode sRGB values in [0, 1] to linear ones (IEC 61966-2-1).
+
+    Examples
+    --------
+    >>> linear_from_srgb(np.array([0.0, 0.5, 1.0])).round(4).tolist()
+    [0.0, 0.214, 1.0]
+    """
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+
+
+def _names(table: str) -> tuple[str, ...]:
+    files = sorted(materials_dir().glob("*.toml"))
+    return tuple(f.stem for f in files if table in read_document(f).data)
+
+
+def _source(keys: dict[str, Kind]) -> Table:
+    return Table(dict.fromkeys(keys, Text()))
+
+
+def _given(source: dict[str, str | None]) -> MappingProxyType[str, str]:
+    return MappingProxyType({k: v for k, v in source.items() if v is not None})
+
+
+def _without_unit(key: str) -> str:
+    return re.sub(r"_(mm|kg_per_m2|n_per_m|n_m|kpa)$", "", key)
