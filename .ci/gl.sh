@@ -5,7 +5,8 @@
 set -euo pipefail
 venv=$1
 
-works() { "$venv/bin/seatlook" doctor >/dev/null 2>&1; }
+probe() { "$venv/bin/python" -c 'from seatlook.pbr.backend import offscreen_backend as b; b()'; }
+works() { probe >/dev/null 2>&1; }
 works && exit 0
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg >/dev/null; then
@@ -42,7 +43,7 @@ else
 fi
 
 if ! works; then
-    "$venv/bin/seatlook" doctor >&2 || true
+    probe >&2 || true
     echo "the software GL library was installed but does not work; see the lines above" >&2
     exit 3
 fi

@@ -1,0 +1,5 @@
+"""``python -m seatlook``."""
+
+from seatlook.cli import main
+
+main()
