@@ -1,0 +1,103 @@
+"""All panels of a cover as one elastic sheet: energies, mass, strains, scalar stiffness."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from seatlook.errors import InputError
+from seatlook.model import Fabric, FloatArray, IntArray
+from seatlook.solver.bending import Bending, curvature_operator
+from seatlook.solver.edgeslope import (
+    areas,
+    edges_of,
+    gradient_matrices,
+    membrane_samples,
+    plane_samples,
+    slope_rows,
+)
+from seatlook.solver.energy import Energy
+from seatlook.solver.membrane import Membrane, laplacian
+
+
+class ElasticSheet:
+    """The `edgeslope` element over any number of flat, unconnected panels.
+
+    Parameters
+    ----------
+    rest : (n, 2) float64 [m]     first axis along the warp
+    faces : (m, 3) int64          counter-clockwise in ``rest``
+    panel : (m,) int64            index into ``fabrics``
+    fabrics : one Fabric for each panel
+
+    Raises
+    ------
+    InvertedElementError   a triangle is turned over or has no area at rest
+    InputError             three triangles share an edge, a panel has no fabric, ...
+    """
+
+    def __init__(
+        self, rest: FloatArray, faces: IntArray, panel: IntArray, fabrics: Sequence[Fabric]
+    ) -> None:
+        rest = np.array(rest, dtype=np.float64, order="C")
+        faces = np.array(faces, dtype=np.int64, order="C")
+        panel = np.array(panel, dtype=np.int64)
+        if len(panel) != len(faces) or not 0 <= panel.min() <= panel.max() < len(fabrics):
+            raise InputError.single(
+                "panel",
+                got=f"{len(panel)} entries for {len(faces)} faces and {len(fabrics)} fabrics",
+                expected="one fabric for every face",
+            )
+        self.area = areas(rest, faces)
+        self.faces = faces
+        self.edges = edges_of(rest, faces)
+        self._panel, self._fabrics = panel, tuple(fabrics)
+        self._thickness = np.array([f.thickness for f in fabrics])[panel]
+        density = np.array([f.density for f in fabrics])[panel]
+        self.mass = np.bincount(
+            faces.ravel(), np.repeat(density * self.area / 3.0, 3), minlength=len(rest)
+        )
+        stiffness = np.stack([f.bending_matrix for f in fabrics])[panel]
+        rows = slope_rows(rest, faces, self.edges)
+        self._curvature = curvature_operator(len(rest), self.area, self.edges, rows, stiffness)
+        samples = membrane_samples(rest, faces, self.edges)
+        self.membrane = Membrane(samples, self.area, panel, self._fabrics)
+        self.bending = Bending(self._curvature, self.area, stiffness)
+        planes = plane_samples(rest, faces)
+        self._laplacian = laplacian(
+            gradient_matrices(len(rest), planes, planes.rows), self.area, panel, self._fabrics
+        )
+
+    @property
+    def energies(self) -> tuple[Energy, ...]:
+        """The terms of the potential, membrane first."""
+        return (self.membrane, self.bending)
+
+    def stiffness(self, include_bending: bool = False) -> csc_array:
+        """Constant scalar matrix (n, n) [N/m] that stands for the sheet in a prefactor."""
+        if include_bending:
+            return csc_array(self._laplacian + self.bending.stiffness())
+        return self._laplacian
+
+    def curvatures(self, x: FloatArray) -> FloatArray:
+        """Return kappa = -(n . x,ij) of every triangle, (m, 2, 2) [1/m]; a crown is positive."""
+        second = (self._curvature @ x).reshape(-1, 3, 3)
+        p = x[self.faces]
+        normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+        normal /= np.linalg.norm(normal, axis=1)[:, None]
+        return _tensors(-np.einsum("tki,ti->tk", second, normal))
+
+    def strains(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Green strain on the top, mid and bottom surface, each (m, 2, 2) in warp/weft axes [1]."""
+        x = np.array(x, dtype=np.float64, order="C")
+        mid = _tensors(self.membrane.strain(x))
+        part = 0.5 * self._thickness[:, None, None] * self.curvatures(x)
+        return mid + part, mid, mid - part
+
+
+def _tensors(components: FloatArray) -> FloatArray:
+    """(m, 2, 2) tensors of (11, 22, 2 x 12) components."""
+    a, b, c = components.T
+    return np.ascontiguousarray(np.stack([a, 0.5 * c, 0.5 * c, b], axis=1).reshape(-1, 2, 2))
