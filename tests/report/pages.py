@@ -14,9 +14,7 @@ from seatlook.report import Check, MapView, PageData, RigHead, Table
 SIZE = (64, 36)
 TEXTURES = ("black leather", "suede <insert>")
 RIGS = (
-    RigHead(
-        name="sun", ev100=14.6, illuminance=97000.0, lights=("sun, 97 klx, elevation 70 deg",)
-    ),
+    RigHead(name="sun", ev100=14.6, illuminance=97000.0, lights=("sun, 97 klx, elevation 70 deg",)),
     RigHead(
         name="bulb_left", ev100=6.53, illuminance=64.0, lights=("bulb, 800 lm", "sky, 2 cd/m2")
     ),

@@ -45,7 +45,9 @@ def number(value: float | str | None) -> str:
         return value
     if value is None or math.isnan(value):
         return "–"
-    if isinstance(value, int) or (value == int(value) and abs(value) < 1e6):
+    if math.isinf(value):
+        text = "∞" if value > 0 else "-∞"
+    elif isinstance(value, int) or (value == int(value) and abs(value) < 1e6):
         text = str(int(value))
     elif 1e-3 <= abs(value) < 1e6:
         digits = max(0, 2 - math.floor(math.log10(abs(value))))

@@ -74,7 +74,7 @@ def page_html(data: PageData) -> str:
 def _policy(style: str, script: str) -> str:
     """Content policy: nothing but the page's own style, script and images."""
     return (
-        "default-src 'none'; img-src 'self' file:; base-uri 'none'; form-action 'none'; "
+        "default-src 'none'; img-src 'self'; base-uri 'none'; form-action 'none'; "
         f"style-src '{_digest(style)}'; script-src '{_digest(script)}'"
     )
 
