@@ -47,8 +47,8 @@ def direction(azimuth_deg: float, elevation_deg: float) -> FloatArray:
 
     Examples
     --------
-    >>> direction(90.0, 0.0).round(6).tolist()
-    [1.0, 0.0, 0.0]
+    >>> direction(90.0, 45.0).round(3).tolist()
+    [0.707, -0.0, 0.707]
     """
     azimuth, elevation = np.radians([azimuth_deg, elevation_deg])
     level = np.cos(elevation)

@@ -1,0 +1,1 @@
+"""Compiled loops: NumPy and Numba only, nothing raised, nothing checked."""
