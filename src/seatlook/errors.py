@@ -10,6 +10,8 @@
     │   └── InvertedElementError
     └── RenderError                 no picture, or a wrong one               exit 3
         └── NoOffscreenContext      no software GL library on this machine
+
+    InputWarning(UserWarning)       an input is readable but unusual, or not all of it is used
 """
 
 from __future__ import annotations
@@ -88,6 +90,10 @@ class InputError(SeatlookError, ValueError):
 
 class AssemblyError(InputError):
     """Pattern, foam and materials are readable but do not make a cover together."""
+
+
+class InputWarning(UserWarning):
+    """An input is readable but unusual, or a part of it is not used."""
 
 
 class SolverError(SeatlookError):

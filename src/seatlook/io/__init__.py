@@ -10,8 +10,13 @@ _PUBLIC: dict[str, str] = {
     "list_foam_materials": "material",
     "list_materials": "material",
     "materials_dir": "material",
+    "read_dxf": "dxf",
     "read_foam_material": "material",
     "read_material": "material",
+    "read_panels": "seams",
+    "read_pattern": "seams",
+    "write_dxf": "dxf_write",
+    "write_seams": "seams",
 }
 
 __all__ = list(_PUBLIC)
