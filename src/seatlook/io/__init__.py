@@ -15,7 +15,9 @@ _PUBLIC: dict[str, str] = {
     "read_material": "material",
     "read_panels": "seams",
     "read_pattern": "seams",
+    "read_result": "result",
     "write_dxf": "dxf_write",
+    "write_result": "result",
     "write_seams": "seams",
 }
 
