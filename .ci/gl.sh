@@ -5,8 +5,17 @@
 set -euo pipefail
 venv=$1
 
-probe() { "$venv/bin/python" -c 'from seatlook.pbr.backend import offscreen_backend as b; b()'; }
-works() { probe >/dev/null 2>&1; }
+# 0: there is a library; 3: there is none; anything else: seatlook itself does not load.
+probe() { "$venv/bin/python" -m seatlook doctor >/dev/null; }
+works() {
+    local code=0
+    reason=$(probe 2>&1) || code=$?
+    if [ $code != 0 ] && [ $code != 3 ]; then
+        echo "$reason" >&2
+        exit 1
+    fi
+    return $code
+}
 works && exit 0
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg >/dev/null; then
@@ -43,7 +52,7 @@ else
 fi
 
 if ! works; then
-    probe >&2 || true
+    echo "$reason" >&2
     echo "the software GL library was installed but does not work; see the lines above" >&2
     exit 3
 fi
