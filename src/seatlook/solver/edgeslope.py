@@ -1,9 +1,9 @@
 """Edges of a flat mesh and the operators that recover the slope across each of them.
 
 The `edgeslope` element keeps vertices as its only unknowns. A least-squares quadratic around every
-edge gives the slope along the edge's conormal, so that both triangles beside the edge see one
-deformation gradient. Bending takes its curvature from these slopes (Morley's element with the edge
-rotation recovered instead of unknown), the membrane its Green strain.
+edge gives the slope along the edge's conormal. Bending takes its curvature from these slopes
+(Morley's element with the edge rotation recovered instead of unknown); the membrane corrects the
+length of every edge from its chord to its arc with the same curvature.
 """
 
 from __future__ import annotations
@@ -19,9 +19,6 @@ from seatlook.solver.kernels import edgeslope as kernels
 
 # A fit whose pivots spread more than this takes the nodes of one more ring.
 _WEAK = 0.03
-# Half the width, in elements, below which the correction of the rows may leave a soft mode.
-_NARROW = 3
-_SWEEPS, _TOLERANCE = 60, 1e-5
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,24 +55,6 @@ class Rows:
     start: IntArray
     nodes: IntArray
     weights: FloatArray
-
-
-Gradients = tuple[csr_array, csr_array]
-
-
-@dataclass(frozen=True, slots=True)
-class Samples:
-    """Places where the deformation gradient is taken, three for each triangle.
-
-    An inner edge is one sample of both its triangles. Where an edge is free, or the sheet too
-    narrow for recovered slopes, the triangle's own plane gradient stands in.
-    """
-
-    ends: IntArray
-    length: FloatArray
-    normal: FloatArray
-    rows: Rows
-    of_face: IntArray
 
 
 def areas(rest: FloatArray, faces: IntArray) -> FloatArray:
@@ -131,18 +110,15 @@ def edges_of(rest: FloatArray, faces: IntArray) -> Edges:
     )
 
 
-def slope_rows(rest: FloatArray, faces: IntArray, edges: Edges, *, wide: bool = False) -> Rows:
+def slope_rows(rest: FloatArray, faces: IntArray, edges: Edges) -> Rows:
     """Recover the conormal slope at the middle of every edge.
 
-    Parameters
-    ----------
-    wide : take all neighbours of both ends instead of the eight nodes around the two triangles;
-        more weights than a fit needs, which the patch-test correction uses up
+    The fit uses the eight nodes around the edge's two triangles, near a free edge all neighbours
+    of both ends, and one ring more where those do not carry a quadratic.
     """
     ring_start, ring = _rings(len(rest), edges)
     patch = _patches(faces, edges)
-    reach = np.full(len(edges.ends), kernels.ONE_RING if wide else kernels.PATCH)
-    reach[(patch < 0).any(axis=1)] = kernels.ONE_RING
+    reach = np.where((patch < 0).any(axis=1), kernels.ONE_RING, kernels.PATCH)
     rows, quality = _fit(rest, edges, patch, reach, (ring_start, ring))
     weak = quality < _WEAK
     if weak.any():
@@ -151,47 +127,23 @@ def slope_rows(rest: FloatArray, faces: IntArray, edges: Edges, *, wide: bool = 
     return rows
 
 
-def membrane_samples(rest: FloatArray, faces: IntArray, edges: Edges) -> Samples:
-    """Return the samples of the membrane, corrected so that constant stress is in balance."""
-    narrow = _narrow(len(rest), faces, edges)
-    inner = np.flatnonzero(~edges.free & ~narrow[edges.faces].all(axis=1))
-    rank = np.full(len(edges.ends), -1, dtype=np.int64)
-    rank[inner] = np.arange(len(inner))
-    of_face = np.where(narrow[:, None], -1, rank[edges.of_face])
-    own = np.flatnonzero((of_face < 0).any(axis=1))
-    of_face = np.where(of_face < 0, 0, of_face)
-    planes = plane_samples(rest, faces[own])
-    place = np.full(len(faces), -1, dtype=np.int64)
-    place[own] = len(inner) + np.arange(len(own))
-    keep = (rank[edges.of_face] >= 0) & ~narrow[:, None]
-    of_face = np.where(keep, of_face, place[:, None])
-    recovered = _select(slope_rows(rest, faces, edges, wide=True), inner)
-    rows = Rows(
-        start=np.concatenate([recovered.start, recovered.start[-1] + planes.rows.start[1:]]),
-        nodes=np.concatenate([recovered.nodes, planes.rows.nodes]),
-        weights=np.concatenate([recovered.weights, planes.rows.weights]),
-    )
-    samples = Samples(
-        ends=np.concatenate([edges.ends[inner], planes.ends]),
-        length=np.concatenate([edges.length[inner], planes.length]),
-        normal=np.concatenate([edges.normal[inner], planes.normal]),
-        rows=rows,
-        of_face=np.ascontiguousarray(of_face),
-    )
-    return _balanced(rest, faces, samples, len(inner))
-
-
-def gradient_matrices(count: int, places: Edges | Samples, rows: Rows) -> Gradients:
-    """Sparse (q, count) operators of the derivative along warp and along weft."""
-    q = len(places.ends)
-    slope = csr_array((rows.weights, rows.nodes, rows.start), shape=(q, count))
-    values = np.stack([-1.0 / places.length, 1.0 / places.length], axis=1).ravel()
-    along = csr_array((values, places.ends.ravel(), 2 * np.arange(q + 1)), shape=(q, count))
-    n0, n1 = places.normal[:, :1], places.normal[:, 1:]
+def gradient_matrices(count: int, edges: Edges, rows: Rows) -> tuple[csr_array, csr_array]:
+    """Sparse (e, count) operators of the derivative along warp and along weft at the edges."""
+    e = len(edges.ends)
+    slope = csr_array((rows.weights, rows.nodes, rows.start), shape=(e, count))
+    along = tangent_matrix(count, edges)
+    n0, n1 = edges.normal[:, :1], edges.normal[:, 1:]
     return (
         csr_array(slope.multiply(n0) - along.multiply(n1)),
         csr_array(slope.multiply(n1) + along.multiply(n0)),
     )
+
+
+def tangent_matrix(count: int, edges: Edges) -> csr_array:
+    """Sparse (e, count) operator of the slope along every edge."""
+    e = len(edges.ends)
+    values = np.stack([-1.0 / edges.length, 1.0 / edges.length], axis=1).ravel()
+    return csr_array((values, edges.ends.ravel(), 2 * np.arange(e + 1)), shape=(e, count))
 
 
 def _rings(count: int, edges: Edges) -> tuple[IntArray, IntArray]:
@@ -233,82 +185,3 @@ def _fit(
     weights = np.empty(len(nodes))
     quality = kernels.fit(rest, edges.ends, start, nodes, weights)
     return Rows(start, nodes, weights), quality
-
-
-def _narrow(
-    count: int, faces: IntArray, edges: Edges
-) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Faces of strips under six elements wide: no vertex nearby is three edges inside."""
-    depth = np.full(count, _NARROW, dtype=np.int64)
-    depth[edges.ends[edges.free]] = 0
-    a, b = edges.ends.T
-    for _ in range(_NARROW):
-        near = depth.copy()
-        np.minimum.at(near, a, depth[b] + 1)
-        np.minimum.at(near, b, depth[a] + 1)
-        depth = near
-    wide = depth >= _NARROW
-    for _ in range(2 * _NARROW):
-        wider = wide.copy()
-        wider[a] |= wide[b]
-        wider[b] |= wide[a]
-        wide = wider
-    return np.asarray(~wide[faces].all(axis=1))
-
-
-def _select(rows: Rows, chosen: IntArray) -> Rows:
-    counts = np.diff(rows.start)[chosen]
-    start = np.concatenate([[0], np.cumsum(counts)])
-    pick = np.repeat(rows.start[chosen] - start[:-1], counts) + np.arange(start[-1])
-    return Rows(start, rows.nodes[pick], rows.weights[pick])
-
-
-def plane_samples(rest: FloatArray, faces: IntArray) -> Samples:
-    """Plane gradient of each triangle, written as an edge: tangent and conormal of edge 0."""
-    p = rest[faces]
-    along = p[:, 1] - p[:, 0]
-    length = np.hypot(along[:, 0], along[:, 1])
-    normal = np.stack([along[:, 1], -along[:, 0]], axis=1) / length[:, None]
-    opposite = np.roll(p, -2, axis=1) - np.roll(p, -1, axis=1)
-    double = along[:, 0] * opposite[:, 0, 1] - along[:, 1] * opposite[:, 0, 0]
-    # Gradient of hat k is the opposite edge, turned by +90 degrees, over twice the area.
-    hat = np.stack([-opposite[:, :, 1], opposite[:, :, 0]], axis=2) / double[:, None, None]
-    weights = np.einsum("tki,ti->tk", hat, normal)
-    rows = Rows(3 * np.arange(len(faces) + 1), faces.ravel(), weights.ravel())
-    return Samples(
-        faces[:, :2], length, normal, rows, np.repeat(np.arange(len(faces))[:, None], 3, 1)
-    )
-
-
-def _balanced(rest: FloatArray, faces: IntArray, samples: Samples, inner: int) -> Samples:
-    """Change the rows of the first ``inner`` samples so that constant stress is in balance.
-
-    Recovered slopes are exact for quadratics, yet their transpose does not return the nodal
-    forces of a constant stress. The least change that does is found once, on the flat mesh.
-    """
-    area = areas(rest, faces)
-    share = np.bincount(
-        samples.of_face.ravel(), np.repeat(area / 3.0, 3), minlength=len(samples.ends)
-    )
-    n = len(rest)
-    got = gradient_matrices(n, samples, samples.rows)
-    planes = plane_samples(rest, faces)
-    wanted = gradient_matrices(n, planes, planes.rows)
-    missing = np.stack([w.T @ area - g.T @ share for g, w in zip(got, wanted, strict=True)], axis=1)
-    rows = samples.rows
-    start, last = rows.start[: inner + 1], rows.start[inner]
-    nodes = rows.nodes[:last]
-    basis = np.empty((last, 6))
-    ends, length = samples.ends[:inner], samples.length[:inner]
-    kernels.quadratics(rest, ends, start, nodes, basis)
-    lever = samples.normal[:inner] * (share[:inner] / length)[:, None]
-    change = kernels.balance(start, nodes, basis, lever, missing, _SWEEPS, _TOLERANCE)
-    weights = rows.weights.copy()
-    weights[:last] += change / np.repeat(length, np.diff(start))
-    return Samples(
-        samples.ends,
-        samples.length,
-        samples.normal,
-        Rows(rows.start, rows.nodes, weights),
-        samples.of_face,
-    )

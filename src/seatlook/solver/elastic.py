@@ -10,16 +10,9 @@ from scipy.sparse import csc_array
 from seatlook.errors import InputError
 from seatlook.model import Fabric, FloatArray, IntArray
 from seatlook.solver.bending import Bending, curvature_operator
-from seatlook.solver.edgeslope import (
-    areas,
-    edges_of,
-    gradient_matrices,
-    membrane_samples,
-    plane_samples,
-    slope_rows,
-)
+from seatlook.solver.edgeslope import areas, edges_of, slope_rows
 from seatlook.solver.energy import Energy
-from seatlook.solver.membrane import Membrane, laplacian
+from seatlook.solver.membrane import Membrane
 
 
 class ElasticSheet:
@@ -62,13 +55,8 @@ class ElasticSheet:
         stiffness = np.stack([f.bending_matrix for f in fabrics])[panel]
         rows = slope_rows(rest, faces, self.edges)
         self._curvature = curvature_operator(len(rest), self.area, self.edges, rows, stiffness)
-        samples = membrane_samples(rest, faces, self.edges)
-        self.membrane = Membrane(samples, self.area, panel, self._fabrics)
+        self.membrane = Membrane(self.edges, self._curvature, self.area, panel, self._fabrics)
         self.bending = Bending(self._curvature, self.area, stiffness)
-        planes = plane_samples(rest, faces)
-        self._laplacian = laplacian(
-            gradient_matrices(len(rest), planes, planes.rows), self.area, panel, self._fabrics
-        )
 
     @property
     def energies(self) -> tuple[Energy, ...]:
@@ -78,8 +66,8 @@ class ElasticSheet:
     def stiffness(self, include_bending: bool = False) -> csc_array:
         """Constant scalar matrix (n, n) [N/m] that stands for the sheet in a prefactor."""
         if include_bending:
-            return csc_array(self._laplacian + self.bending.stiffness())
-        return self._laplacian
+            return csc_array(self.membrane.stiffness() + self.bending.stiffness())
+        return self.membrane.stiffness()
 
     def curvatures(self, x: FloatArray) -> FloatArray:
         """Return kappa = -(n . x,ij) of every triangle, (m, 2, 2) [1/m]; a crown is positive."""

@@ -1,4 +1,4 @@
-"""Averaged Green strain of a triangle from the gradients at its edges, and its law."""
+"""Green strain of a triangle from the arc lengths of its edges, and its law."""
 
 import numpy as np
 from numba import njit
@@ -61,56 +61,56 @@ def tangent(tables, counts, coupling, ratio, e11, e22, e12):
 
 
 @njit(cache=True)
-def gradients(x, ends, length, normal, start, nodes, weights, F):
-    """Deformation gradient at every sample: F (q, 6), warp column first."""
-    for q in range(len(ends)):
-        a, b = ends[q, 0], ends[q, 1]
-        inv = 1.0 / length[q]
-        n0, n1 = normal[q, 0], normal[q, 1]
-        s0 = s1 = s2 = 0.0
-        for i in range(start[q], start[q + 1]):
+def edge_strains(x, ends, length, start, nodes, weights, bow, strain):
+    """Green strain of every edge, its chord lengthened to the arc that its curvature makes.
+
+    ``bow`` (e, 3) [1/m] is the second derivative along the edge, a quadratic's mean square slope
+    being the square of the chord's plus a twelfth of (length times bow) squared.
+    """
+    for e in range(len(ends)):
+        b0 = b1 = b2 = 0.0
+        for i in range(start[e], start[e + 1]):
             v, w = nodes[i], weights[i]
-            s0 += w * x[v, 0]
-            s1 += w * x[v, 1]
-            s2 += w * x[v, 2]
-        t0 = (x[b, 0] - x[a, 0]) * inv
-        t1 = (x[b, 1] - x[a, 1]) * inv
-        t2 = (x[b, 2] - x[a, 2]) * inv
-        F[q, 0], F[q, 3] = s0 * n0 - t0 * n1, s0 * n1 + t0 * n0
-        F[q, 1], F[q, 4] = s1 * n0 - t1 * n1, s1 * n1 + t1 * n0
-        F[q, 2], F[q, 5] = s2 * n0 - t2 * n1, s2 * n1 + t2 * n0
+            b0 += w * x[v, 0]
+            b1 += w * x[v, 1]
+            b2 += w * x[v, 2]
+        bow[e, 0], bow[e, 1], bow[e, 2] = b0, b1, b2
+        p, q = ends[e, 0], ends[e, 1]
+        d0, d1, d2 = x[q, 0] - x[p, 0], x[q, 1] - x[p, 1], x[q, 2] - x[p, 2]
+        square = length[e] * length[e]
+        strain[e] = 0.5 * (
+            (d0 * d0 + d1 * d1 + d2 * d2) / square
+            + (b0 * b0 + b1 * b1 + b2 * b2) * square / 12.0
+            - 1.0
+        )
 
 
 @njit(cache=True)
-def strains(F, samples, E):
-    """Mean Green strain (E11, E22, 2 E12) of every triangle over its three samples."""
-    for t in range(len(samples)):
-        a = b = c = 0.0
-        for k in range(3):
-            f = F[samples[t, k]]
-            a += f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
-            b += f[3] * f[3] + f[4] * f[4] + f[5] * f[5]
-            c += f[0] * f[3] + f[1] * f[4] + f[2] * f[5]
-        E[t, 0], E[t, 1], E[t, 2] = 0.5 * (a / 3.0 - 1.0), 0.5 * (b / 3.0 - 1.0), c / 3.0
+def strains(edge_strain, of_face, natural, E):
+    """Green strain (E11, E22, 2 E12) of every triangle from those of its three edges."""
+    for t in range(len(of_face)):
+        for c in range(3):
+            total = 0.0
+            for k in range(3):
+                total += natural[t, c, k] * edge_strain[of_face[t, k]]
+            E[t, c] = total
 
 
 @njit(cache=True)
-def stresses(E, samples, area, fabric, tables, counts, constants, load):
-    """Total energy; fills ``load`` (q, 3) with the stress [N m] that every sample carries."""
+def tensions(E, of_face, natural, area, fabric, tables, counts, constants, pull):
+    """Total energy; fills ``pull`` (e,) [J], its derivative by the strain of every edge."""
     total = 0.0
-    load[:] = 0.0
-    for t in range(len(samples)):
+    pull[:] = 0.0
+    for t in range(len(of_face)):
         f = fabric[t]
         psi, s11, s22, s12 = law(
             tables[f], counts[f], constants[f, 0], constants[f, 1], E[t, 0], E[t, 1], E[t, 2]
         )
         total += area[t] * psi
-        share = area[t] / 3.0
         for k in range(3):
-            q = samples[t, k]
-            load[q, 0] += share * s11
-            load[q, 1] += share * s22
-            load[q, 2] += share * s12
+            pull[of_face[t, k]] += area[t] * (
+                natural[t, 0, k] * s11 + natural[t, 1, k] * s22 + natural[t, 2, k] * s12
+            )
     return total
 
 
@@ -127,27 +127,23 @@ def laws(E, fabric, tables, counts, constants):
 
 
 @njit(cache=True)
-def forces(F, load, ends, length, normal, start, nodes, weights, gradient):
-    """Add the nodal forces of the samples' stresses to ``gradient``."""
-    for q in range(len(ends)):
-        s11, s22, s12 = load[q, 0], load[q, 1], load[q, 2]
-        n0, n1 = normal[q, 0], normal[q, 1]
-        a, b = ends[q, 0], ends[q, 1]
-        inv = 1.0 / length[q]
-        u, w = s11 * n0 + s12 * n1, s12 * n0 + s22 * n1
-        p0 = F[q, 0] * u + F[q, 3] * w
-        p1 = F[q, 1] * u + F[q, 4] * w
-        p2 = F[q, 2] * u + F[q, 5] * w
-        u, w = (s12 * n0 - s11 * n1) * inv, (s22 * n0 - s12 * n1) * inv
+def forces(x, pull, ends, length, start, nodes, weights, bow, gradient):
+    """Add the nodal forces of the edges' pulls to ``gradient``."""
+    for e in range(len(ends)):
+        p, q = ends[e, 0], ends[e, 1]
+        square = length[e] * length[e]
+        chord = pull[e] / square
         for c in range(3):
-            t = F[q, c] * u + F[q, 3 + c] * w
-            gradient[a, c] -= t
-            gradient[b, c] += t
-        for i in range(start[q], start[q + 1]):
-            v, r = nodes[i], weights[i]
-            gradient[v, 0] += r * p0
-            gradient[v, 1] += r * p1
-            gradient[v, 2] += r * p2
+            f = chord * (x[q, c] - x[p, c])
+            gradient[p, c] -= f
+            gradient[q, c] += f
+        arc = pull[e] * square / 12.0
+        b0, b1, b2 = arc * bow[e, 0], arc * bow[e, 1], arc * bow[e, 2]
+        for i in range(start[e], start[e + 1]):
+            v, w = nodes[i], weights[i]
+            gradient[v, 0] += w * b0
+            gradient[v, 1] += w * b1
+            gradient[v, 2] += w * b2
 
 
 @njit(cache=True)
