@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csc_array, csr_array, eye_array, kron
 
 from seatlook.errors import InputError
 from seatlook.model import Curve, Fabric, FloatArray, IntArray
@@ -47,7 +47,7 @@ class Membrane:
         self._natural = natural_strains(edges)
         bow = bow_operator(edges, curvature)
         self._rows = (bow.indptr.astype(np.int64), bow.indices.astype(np.int64), bow.data)
-        self._bow_operator = bow
+        self._split = _common(tangent_matrix(curvature.shape[1], edges), bow)
         self._law = law_tables(fabrics)
         self._constants = np.array(
             [[f.poisson * f.weft.stiffness[0], f.compression_ratio] for f in fabrics]
@@ -85,6 +85,46 @@ class Membrane:
             x, self._pull, self._edges.ends, self._edges.length, *self._rows, self._bow, gradient
         )
         return float(energy)
+
+    def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
+        """Second derivative (3n, 3n) [N/m]; ``definite`` keeps the tensile part of the stress."""
+        self._deform(x)
+        edges, (chord, arc) = self._edges, self._split
+        material = np.empty((len(self._area), 3, 3))
+        kernels.curvatures(
+            self._E,
+            self._natural,
+            self._area,
+            self._fabric,
+            *self._law,
+            self._constants,
+            material,
+        )
+        stress = kernels.laws(self._E, self._fabric, *self._law, self._constants)
+        if definite:
+            kernels.clamp(stress)
+        share = self._area[:, None] * np.einsum("tck,tc->tk", self._natural, stress)
+        of_face = edges.of_face
+        pull = np.bincount(of_face.ravel(), share.ravel(), minlength=len(edges.ends))
+        bend = np.maximum(pull, 0.0) if definite else pull
+        twelfth = edges.length**2 / 12.0
+        along = (x[edges.ends[:, 1]] - x[edges.ends[:, 0]]) / edges.length[:, None]
+        bowed = twelfth[:, None] * self._bow
+        row = np.repeat(np.arange(len(edges.ends)), np.diff(chord.indptr))
+        rates = along[row] * chord.data[:, None] + bowed[row] * arc.data[:, None]
+        jacobian = csr_array(
+            (
+                rates.ravel(),
+                (3 * chord.indices[:, None] + np.arange(3)).ravel(),
+                3 * chord.indptr,
+            ),
+            shape=(len(edges.ends), x.size),
+        )
+        pairs = (np.repeat(of_face, 3, axis=1).ravel(), np.tile(of_face, (1, 3)).ravel())
+        coupled = csr_array((material.ravel(), pairs), shape=(len(pull), len(pull)))
+        geometric = chord.T @ chord.multiply(pull[:, None])
+        geometric = geometric + arc.T @ arc.multiply((twelfth * bend)[:, None])
+        return csc_array(jacobian.T @ (coupled @ jacobian) + kron(geometric, eye_array(3)))
 
     def stiffness(self) -> csc_array:
         """Scalar stiffness (n, n) [N/m] of plane triangles, warp and weft each with its own."""
@@ -124,6 +164,26 @@ def bow_operator(edges: Edges, curvature: csr_array) -> csr_array:
     columns = np.repeat(np.arange(3 * m).reshape(m, 1, 3), 3, axis=1).ravel()
     pick = csr_array((along.ravel(), (rows, columns)), shape=(len(edges.ends), 3 * m))
     return csr_array(pick @ curvature)
+
+
+def _common(first: csr_array, second: csr_array) -> tuple[csr_array, csr_array]:
+    """Both matrices on the union of their patterns, zeros stored."""
+    ones = [
+        csr_array((np.ones(m.nnz), m.indices, m.indptr), shape=m.shape) for m in (first, second)
+    ]
+    union = csr_array(ones[0] + ones[1])
+    union.sort_indices()
+    empty = csr_array((np.zeros(union.nnz), union.indices, union.indptr), shape=union.shape)
+    place = csr_array((np.arange(1.0, union.nnz + 1), union.indices, union.indptr), union.shape)
+    spread = []
+    for matrix, mask in zip((first, second), ones, strict=True):
+        filled = empty.copy()
+        where = csr_array(place.multiply(mask))
+        where.sort_indices()
+        sorted_matrix = matrix.sorted_indices()
+        filled.data[where.data.astype(np.int64) - 1] = sorted_matrix.data
+        spread.append(filled)
+    return spread[0], spread[1]
 
 
 def law_tables(fabrics: Sequence[Fabric]) -> tuple[FloatArray, IntArray]:

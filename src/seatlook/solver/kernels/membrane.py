@@ -147,6 +147,29 @@ def forces(x, pull, ends, length, start, nodes, weights, bow, gradient):
 
 
 @njit(cache=True)
+def curvatures(E, natural, area, fabric, tables, counts, constants, out):
+    """Second derivative (m, 3, 3) [J] of every triangle's energy by its three edge strains."""
+    for t in range(len(E)):
+        f = fabric[t]
+        d1, d2, d12, d3 = tangent(
+            tables[f], counts[f], constants[f, 0], constants[f, 1], E[t, 0], E[t, 1], E[t, 2]
+        )
+        for i in range(3):
+            a = area[t] * (d1 * natural[t, 0, i] + d12 * natural[t, 1, i])
+            b = area[t] * (d12 * natural[t, 0, i] + d2 * natural[t, 1, i])
+            c = area[t] * d3 * natural[t, 2, i]
+            for j in range(3):
+                out[t, i, j] = a * natural[t, 0, j] + b * natural[t, 1, j] + c * natural[t, 2, j]
+
+
+@njit(cache=True)
+def clamp(S):
+    """Keep the tensile part of every stress."""
+    for t in range(len(S)):
+        S[t, 0], S[t, 1], S[t, 2] = tensile(S[t, 0], S[t, 1], S[t, 2])
+
+
+@njit(cache=True)
 def tensile(s11, s22, s12):
     """Tensile part of a symmetric 2x2 stress."""
     mean, half = 0.5 * (s11 + s22), 0.5 * (s11 - s22)
