@@ -13,7 +13,9 @@ IntArray = npt.NDArray[np.int64]
 
 def edges(faces: IntArray) -> IntArray:
     """Return the undirected edges (e, 2) of ``faces`` (m, 3), each once, smaller index first."""
-    return np.unique(np.sort(_half_edges(faces), axis=1), axis=0)
+    half = np.sort(_half_edges(faces), axis=1)
+    n = int(faces.max(initial=-1)) + 1
+    return np.column_stack(np.divmod(np.unique(half @ [n, 1]), max(n, 1)))
 
 
 def boundary_loops(faces: IntArray) -> list[IntArray]:

@@ -1,0 +1,140 @@
+"""The demo cushion's shape: one smooth map from a flat plane onto top, rolls and walls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatlook.model import FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cushion:
+    """A car-seat cushion: crowned insert, two bolsters, waterfall front, walls that tuck under.
+
+    All lengths in m, angles in rad. The plane point p maps to the plan view where the top is
+    flat; beyond the start of the edge roll the way from there, measured along the plan outline's
+    normal, is arc length over the roll and down the wall.
+
+    Parameters
+    ----------
+    width, depth, corner_radius : plan outline, a rounded rectangle centred on the origin
+    front_bow : how far the middle of the front stands forward of its corners
+    height, tilt : top of the middle; rise towards the front per length
+    crown_x, crown_y : fall of the bolsters' level at the outline's sides and ends
+    trench, trench_taper : half width of the insert at y = 0; widening per length to the front
+    trench_depth : from the bolsters' level to the tie-down trench, deepest at ``seat_y``
+    bolster_width : from the trench to where the bolster reaches its level
+    pillow : rise of the insert's middle above the trenches
+    seat_y, fade_front, fade_rear : trench and insert come up to the bolsters' level over these
+        lengths, so that no crease is left where front and rear panels are sewn on
+    roll, roll_front, roll_rear : radius at sides and corners, mid front, mid rear
+    roll_angle : angle turned by the roll; beyond 90 degrees the wall leans inward
+    seam_angle, seam_front, seam_rear : where on the roll the top is sewn to the walls
+    frame_height : level at which the cover ends; the foam's bottom is at 0
+    """
+
+    width: float = 0.50
+    depth: float = 0.55
+    corner_radius: float = 0.075
+    front_bow: float = 0.012
+    height: float = 0.125
+    tilt: float = 0.04
+    crown_x: float = 0.006
+    crown_y: float = 0.010
+    trench: float = 0.135
+    trench_taper: float = 0.03
+    trench_depth: float = 0.036
+    bolster_width: float = 0.068
+    pillow: float = 0.022
+    seat_y: float = 0.03
+    fade_front: float = 0.245
+    fade_rear: float = 0.215
+    roll: float = 0.046
+    roll_front: float = 0.060
+    roll_rear: float = 0.046
+    roll_angle: float = np.deg2rad(90.0)
+    seam_angle: float = np.deg2rad(48.0)
+    seam_front: float = np.deg2rad(60.0)
+    seam_rear: float = np.deg2rad(48.0)
+    frame_height: float = 0.025
+
+    @property
+    def half(self) -> FloatArray:
+        """Half width and half depth of the plan outline, (2,)."""
+        return np.array([self.width, self.depth]) / 2
+
+    def trench_x(self, y: FloatArray) -> FloatArray:
+        """Distance of the trenches from the middle plane at ``y``."""
+        return np.asarray(self.trench - self.trench_taper * y)
+
+    def top(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Height of the top over the plan, before the edge roll takes it down."""
+        a, b = self.half
+        level = self.height - self.tilt * y - self.crown_x * (x / a) ** 2
+        level = level - self.crown_y * (y / b) ** 2
+        trench = self.trench_x(y)
+        out = np.clip(1 - (np.abs(x) - trench) / self.bolster_width, 0, 1)
+        u = np.clip(np.abs(x) / trench, 0, 1)
+        # Quartic share: round shoulders, so the insert swells like a pillow between its seams.
+        inner = self.trench_depth - self.pillow * (1 - 0.4 * u**2 - 0.6 * u**4)
+        carved = np.where(np.abs(x) < trench, inner, self.trench_depth * out**2)
+        fade = np.where(y < self.seat_y, self.fade_front, self.fade_rear)
+        phase = np.clip((y - self.seat_y) / fade, -1, 1)
+        return np.asarray(level - carved * np.cos(np.pi / 2 * phase) ** 2)
+
+    def outline(self, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Project p (k, 2) onto the plan outline: foot (k, 2), outward normal, signed distance."""
+        core = self.half - self.corner_radius
+        nearest = np.clip(p, -core, core)
+        away = p - nearest
+        reach = np.linalg.norm(away, axis=1)
+        inside = reach == 0
+        across = np.abs(p) - self.half
+        axis = across.argmax(axis=1)
+        unit = np.eye(2)[axis] * np.where(np.take_along_axis(p, axis[:, None], 1) < 0, -1, 1)
+        normal = np.where(inside[:, None], unit, away / np.where(inside, 1, reach)[:, None])
+        distance = np.where(inside, across.max(axis=1), reach - self.corner_radius)
+        return p - distance[:, None] * normal, normal, distance
+
+    def rolls(self, foot: FloatArray, normal: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Roll radius and seam angle at points of the plan outline, each (k,)."""
+        core = self.half[0] - self.corner_radius
+        bump = np.clip(1 - (foot[:, 0] / core) ** 2, 0, 1) ** 2
+        front, rear = bump * (normal[:, 1] < -0.99), bump * (normal[:, 1] > 0.99)
+        radius = self.roll + front * (self.roll_front - self.roll)
+        angle = self.seam_angle + front * (self.seam_front - self.seam_angle)
+        return (
+            radius + rear * (self.roll_rear - self.roll),
+            angle + rear * (self.seam_rear - self.seam_angle),
+        )
+
+    def position(self, p: FloatArray) -> FloatArray:
+        """Map plane points p (k, 2) onto the surface, (k, 3)."""
+        foot, normal, distance = self.outline(p)
+        radius, _ = self.rolls(foot, normal)
+        way = np.maximum(distance + radius, 0)
+        turned = np.minimum(way / radius, self.roll_angle)
+        wall = way - turned * radius
+        rolled = foot - (radius * (1 - np.sin(turned)))[:, None] * normal
+        plan = np.where((way > 0)[:, None], rolled, p)
+        z = self.top(*plan.T) - radius * (1 - np.cos(turned)) - np.sin(self.roll_angle) * wall
+        x, y = (plan + (np.cos(self.roll_angle) * wall)[:, None] * normal).T
+        a, b = self.half
+        y = y - self.front_bow * (1 - (x / a) ** 2) * (np.maximum(-y, 0) / b) ** 2
+        return np.column_stack([x, y, z])
+
+    def ring(self, feet: FloatArray, normals: FloatArray, *, level: float | None) -> FloatArray:
+        """Plane points (k, 2) of a closed line round the cushion.
+
+        The seam between top and walls where ``level`` is None, else the line at that height.
+        """
+        radius, seam = self.rolls(feet, normals)
+        if level is None:
+            way = radius * seam
+        else:
+            plan = feet - (radius * (1 - np.sin(self.roll_angle)))[:, None] * normals
+            fall = self.top(*plan.T) - radius * (1 - np.cos(self.roll_angle)) - level
+            way = radius * self.roll_angle + fall / np.sin(self.roll_angle)
+        return np.asarray(feet + (way - radius)[:, None] * normals)

@@ -1,0 +1,258 @@
+"""A design surface made into a flat pattern that fits it, with the strain that is left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from seatlook import mesh
+from seatlook.design.pattern import pair, sewing_pattern
+from seatlook.design.placement import place
+from seatlook.design.relax import HeldEdges, flatten_patch, stretches
+from seatlook.design.surface import FREE, DesignSurface, Patch, Side, sides
+from seatlook.errors import InputError, Problem, did_you_mean
+from seatlook.model import FloatArray, Pattern, Pose
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanelStrain:
+    """Strain a flat panel takes when laid onto its patch, area-weighted, from both principals."""
+
+    panel: str
+    area: float
+    mean: float
+    rms: float
+    smallest: float
+    largest: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeamLengths:
+    """Lengths [m] of a seam's two sewing lines and of the seam line on the design surface."""
+
+    seam: str
+    a: float
+    b: float
+    design: float
+
+    @property
+    def difference(self) -> float:
+        """How much longer side a is than side b [m]."""
+        return self.a - self.b
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flattened:
+    """The pattern of a design surface.
+
+    Parameters
+    ----------
+    pattern : Pattern
+    placement : panel name -> Pose          near its patch, clear of the foam
+    flat : panel name -> (n, 2) [m]         pattern position of each vertex of the panel's patch
+    strain : (m, 2) float64 [1]             per face of the surface, small principal first;
+                                            positive where the panel is stretched by the form
+    panels : tuple of PanelStrain
+    seams : tuple of SeamLengths
+    """
+
+    pattern: Pattern
+    placement: MappingProxyType[str, Pose]
+    flat: MappingProxyType[str, FloatArray]
+    strain: FloatArray
+    panels: tuple[PanelStrain, ...]
+    seams: tuple[SeamLengths, ...]
+
+
+def flatten(
+    surface: DesignSurface,
+    *,
+    allowance: float = 0.010,
+    tension: float = 0.0,
+    ease: Mapping[str, float] = MappingProxyType({}),
+    starve: Mapping[str, float] = MappingProxyType({}),
+    seam_strain: float = 0.015,
+) -> Flattened:
+    """Flatten every panel of a design surface and make a sewable pattern of them.
+
+    Each panel first takes the shape of least strain energy by itself; then the two lines of a
+    seam agree on the mean of their lengths, segment by segment, and the panels relax again with
+    these lengths held. So both lines of a seam are equally long, piece by piece.
+
+    Parameters
+    ----------
+    surface : DesignSurface
+    allowance : float [m]         seam allowance and hem round every panel
+    tension : float               all panels are drawn smaller by this fraction
+    ease : edge or seam name -> fraction
+        This sewing line becomes longer than its partner by the fraction, the panel's geometry
+        giving way near it; a seam's name stands for the edge of its first panel.
+    starve : panel name -> fraction
+        The panel becomes narrower across its grain.
+    seam_strain : float
+        Largest share of the strain that a seam line may take.
+
+    Returns
+    -------
+    Flattened
+
+    Raises
+    ------
+    InputError
+        A panel is not a disk; ``ease`` or ``starve`` name nothing or ask too much.
+    SeatlookError
+        A panel cannot be flattened without folding.
+    """
+    patches = surface.patches()
+    borders = sides(patches)
+    seams = pair(borders)
+    first = {seam.name: seam.a for seam in seams}
+    ease = {first.get(name, name): value for name, value in ease.items()}
+    _check("ease", ease, [s.name for s in borders if s.neighbour != FREE])
+    _check("starve", starve, surface.panel_names)
+    _check("tension", {"": tension}, [""])
+
+    alone = {p.name: flatten_patch(p.vertices, p.faces, _held(p, [], {})) for p in patches}
+    ratio = _agreed_ratios(patches, borders, alone, limit=seam_strain)
+    ratio |= {name: ratio[name] * (1 + value) for name, value in ease.items()}
+    flat = {}
+    for patch in patches:
+        own = [s for s in borders if s.panel == patch.name and s.neighbour != FREE]
+        held = _held(patch, own, ratio)
+        x = flatten_patch(patch.vertices, patch.faces, held, start=alone[patch.name])
+        x = _grain_up(patch, x) * (1 - tension)
+        flat[patch.name] = x * [1 - starve.get(patch.name, 0.0), 1.0]
+    return _report(surface, patches, borders, _side_by_side(flat), allowance)
+
+
+def _report(
+    surface: DesignSurface,
+    patches: tuple[Patch, ...],
+    borders: tuple[Side, ...],
+    flat: dict[str, FloatArray],
+    allowance: float,
+) -> Flattened:
+    """Collect pattern, poses and figures."""
+    strain = np.empty((len(surface.faces), 2))
+    panels = []
+    for i, patch in enumerate(patches):
+        own = stretches(patch.vertices, patch.faces, flat[patch.name]) - 1
+        strain[surface.panel == i] = own
+        panels.append(_panel_strain(patch, own))
+    pattern = sewing_pattern(patches, borders, flat, allowance)
+    design = {s.name: float(mesh.arc_length(surface.vertices[s.vertices])[-1]) for s in borders}
+    return Flattened(
+        pattern=pattern,
+        placement=MappingProxyType({p.name: place(p, flat[p.name]) for p in patches}),
+        flat=MappingProxyType(flat),
+        strain=strain,
+        panels=tuple(panels),
+        seams=tuple(
+            SeamLengths(
+                seam=seam.name,
+                a=pattern.edge_length(seam.a),
+                b=pattern.edge_length(seam.b[0]),
+                design=design[seam.a],
+            )
+            for seam in pattern.seams
+        ),
+    )
+
+
+def _panel_strain(patch: Patch, strain: FloatArray) -> PanelStrain:
+    area = mesh.face_areas(patch.vertices, patch.faces)
+    share = area[:, None] / (2 * area.sum())
+    return PanelStrain(
+        panel=patch.name,
+        area=float(area.sum()),
+        mean=float((share * strain).sum()),
+        rms=float(np.sqrt((share * strain**2).sum())),
+        smallest=float(strain.min()),
+        largest=float(strain.max()),
+    )
+
+
+def _check(key: str, wanted: Mapping[str, float], known: Sequence[str]) -> None:
+    """Refuse names that do not exist and fractions that no pattern maker would use."""
+    problems = [
+        Problem(
+            key=key,
+            got=repr(name),
+            expected=f"one of {', '.join(known)}",
+            hint=did_you_mean(name, known),
+        )
+        for name in wanted
+        if name not in known
+    ]
+    problems += [
+        Problem(key=f"{key} {name}".strip(), got=f"{value:g}", expected="-0.2 to 0.2")
+        for name, value in wanted.items()
+        if not abs(value) <= 0.2
+    ]
+    if problems:
+        raise InputError(problems)
+
+
+def _held(patch: Patch, own: Sequence[Side], ratio: Mapping[str, FloatArray]) -> HeldEdges:
+    """Return the segments of some sides with their lengths on the surface times a ratio."""
+    at = [side.indices(patch) for side in own]
+    pairs = [np.column_stack([i[:-1], i[1:]]) for i in at]
+    length = [_steps(patch.vertices[i]) * ratio[s.name] for i, s in zip(at, own, strict=True)]
+    return HeldEdges(
+        vertices=np.concatenate([np.zeros((0, 2), np.int64), *pairs]),
+        length=np.concatenate([np.zeros(0), *length]),
+    )
+
+
+def _agreed_ratios(
+    patches: tuple[Patch, ...],
+    borders: tuple[Side, ...],
+    alone: Mapping[str, FloatArray],
+    *,
+    limit: float,
+) -> dict[str, FloatArray]:
+    """Return per side and segment its flat length over that on the surface, agreed by both."""
+    by_name = {patch.name: patch for patch in patches}
+    wish = {}
+    for side in borders:
+        patch = by_name[side.panel]
+        at = side.indices(patch)
+        wish[side.name] = _steps(alone[side.panel][at]) / _steps(patch.vertices[at])
+    agreed: dict[str, FloatArray] = {}
+    for seam in pair(borders):
+        b = seam.b[0]
+        mean = np.clip((wish[seam.a] + wish[b][::-1]) / 2, 1 - limit, 1 + limit)
+        agreed |= {seam.a: mean, b: mean[::-1]}
+    return agreed
+
+
+def _steps(polyline: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(np.diff(polyline, axis=0), axis=1))
+
+
+def _grain_up(patch: Patch, flat: FloatArray) -> FloatArray:
+    """Turn a flat patch so that the way from front to rear runs along +y.
+
+    Where the panel faces front or rear, upward takes the place of rearward.
+    """
+    normal = mesh.face_vectors(patch.vertices, patch.faces)
+    area = np.linalg.norm(normal, axis=1)
+    away = np.abs(normal[:, 1]).sum() / area.sum()
+    axis = patch.vertices[:, 1] if away < np.sqrt(0.5) else patch.vertices[:, 2]
+    # Slope of the world axis over the flat panel, in the least-squares sense.
+    centred = flat - flat.mean(axis=0)
+    slope, *_ = np.linalg.lstsq(centred, axis - axis.mean())
+    c, s = slope[::-1] / np.linalg.norm(slope)
+    return np.asarray(flat @ np.array([[c, -s], [s, c]]).T)
+
+
+def _side_by_side(flat: Mapping[str, FloatArray], gap: float = 0.05) -> dict[str, FloatArray]:
+    """Lay the panels out in a row above the first axis."""
+    placed, right = {}, 0.0
+    for name, x in flat.items():
+        placed[name] = np.ascontiguousarray(x - x.min(axis=0) + [right, 0.0])
+        right = placed[name][:, 0].max() + gap
+    return placed

@@ -1,0 +1,179 @@
+"""Flattening one patch: conformal start, then least elastic energy by Gauss-Newton steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from seatlook.errors import SeatlookError
+from seatlook.mesh import face_areas
+from seatlook.model import FloatArray, IntArray
+
+_MAX_STEPS = 60
+# Weight of a held edge length against the faces beside it: 1e4 holds lengths to about 1e-6.
+_HOLD = 1e4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeldEdges:
+    """Mesh edges (k, 2) whose flat length (k,) [m] is prescribed."""
+
+    vertices: IntArray
+    length: FloatArray
+
+
+def flatten_patch(
+    vertices: FloatArray, faces: IntArray, held: HeldEdges, *, start: FloatArray | None = None
+) -> FloatArray:
+    """Return flat positions (n, 2) [m] of least strain energy with edges of given length.
+
+    Energy of an isotropic sheet without Poisson effect, ``sum A |G|^2`` with the Green strain
+    ``G = (F^T F - I) / 2`` of the map from space to the plane.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64 [m]; faces : (m, 3) int64, a disk
+    held : HeldEdges
+    start : (n, 2) [m]   first guess; None takes the conformal map
+
+    Raises
+    ------
+    SeatlookError
+        The steps do not settle, or the flat patch folds over.
+    """
+    gradient = _gradient(vertices, faces)
+    area = face_areas(vertices, faces)
+    x = conformal_map(vertices, faces) if start is None else start
+    value, residual, jacobian = _energy(x, gradient, area, held)
+    for _ in range(_MAX_STEPS):
+        normal = (jacobian.T @ jacobian).tocsc()
+        # Rigid motions cost nothing: a trace of damping makes the matrix regular.
+        damping = sp.identity(normal.shape[0], format="csc") * (1e-9 * normal.diagonal().mean())
+        step = -splu(normal + damping).solve(jacobian.T @ residual).reshape(-1, 2)
+        scale = 1.0
+        while True:
+            trial = x + scale * step
+            new, residual, jacobian = _energy(trial, gradient, area, held)
+            if new <= value or scale < 1e-4:
+                break
+            scale /= 2
+        x = trial
+        settled = scale * np.abs(step).max() < 1e-9 or value - new < 1e-10 * value
+        value = new
+        if settled:
+            return _unfolded(x, gradient)
+    raise SeatlookError(f"flattening does not settle in {_MAX_STEPS} steps")
+
+
+def conformal_map(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    """Return the least-squares conformal map (n, 2) of a disk, in true size.
+
+    Lévy, Petitjean, Ray, Maillot 2002, with the two vertices farthest apart pinned.
+    """
+    gx, gy = _gradient(vertices, faces)
+    weight = sp.diags(np.sqrt(face_areas(vertices, faces)))
+    # Cauchy-Riemann: grad v is grad u turned by 90 degrees.
+    rows = sp.vstack(
+        [sp.hstack([weight @ gx, -(weight @ gy)]), sp.hstack([weight @ gy, weight @ gx])]
+    ).tocsc()
+    n = len(vertices)
+    first = int(np.linalg.norm(vertices - vertices.mean(axis=0), axis=1).argmax())
+    second = int(np.linalg.norm(vertices - vertices[first], axis=1).argmax())
+    pinned = np.array([first, second, n + first, n + second])
+    value = np.array([0.0, np.linalg.norm(vertices[second] - vertices[first]), 0.0, 0.0])
+    free = np.setdiff1d(np.arange(2 * n), pinned)
+    known = rows[:, pinned] @ value
+    matrix = rows[:, free]
+    flat = np.empty(2 * n)
+    flat[pinned] = value
+    flat[free] = splu((matrix.T @ matrix).tocsc()).solve(-(matrix.T @ known))
+    x = flat.reshape(2, n).T
+    ratio = face_areas(vertices, faces).sum() / face_areas(x, faces).sum()
+    return np.ascontiguousarray(x * np.sqrt(ratio))
+
+
+def stretches(vertices: FloatArray, faces: IntArray, flat: FloatArray) -> FloatArray:
+    """Return the principal stretches (m, 2), small one first, of the map from flat to space."""
+    F = _deformation(flat, _gradient(vertices, faces))
+    return np.asarray(1 / np.linalg.svd(F, compute_uv=False))
+
+
+def _gradient(vertices: FloatArray, faces: IntArray) -> tuple[sp.csr_array, sp.csr_array]:
+    """Operators (m, n) for the derivative along each face's own two axes."""
+    p = vertices[faces]
+    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    length = np.linalg.norm(u, axis=1)
+    along = u / length[:, None]
+    normal = np.cross(u, v)
+    across = np.cross(normal / np.linalg.norm(normal, axis=1, keepdims=True), along)
+    vx, vy = np.einsum("md,md->m", v, along), np.einsum("md,md->m", v, across)
+    zero = np.zeros_like(vx)
+    # Rows of the inverse edge matrix give the hat functions' gradients of corners 1 and 2.
+    dx = np.column_stack([zero, 1 / length, zero])
+    dy = np.column_stack([zero, -vx / (length * vy), 1 / vy])
+    dx[:, 0], dy[:, 0] = -dx.sum(axis=1), -dy.sum(axis=1)
+    rows = np.repeat(np.arange(len(faces)), 3)
+    shape = (len(faces), len(vertices))
+    return tuple(  # type: ignore[return-value]
+        sp.csr_array((d.ravel(), (rows, faces.ravel())), shape=shape) for d in (dx, dy)
+    )
+
+
+def _deformation(x: FloatArray, gradient: tuple[sp.csr_array, sp.csr_array]) -> FloatArray:
+    """Return F (m, 2, 2) of the map from space to the plane."""
+    return np.stack([g @ x for g in gradient], axis=2)
+
+
+def _energy(
+    x: FloatArray,
+    gradient: tuple[sp.csr_array, sp.csr_array],
+    area: FloatArray,
+    held: HeldEdges,
+) -> tuple[float, FloatArray, sp.csr_array]:
+    """Return energy, residual and Jacobian with unknowns in the order x0 y0 x1 y1 ..."""
+    gx, gy = gradient
+    F = _deformation(x, gradient)
+    root = np.sqrt(area)
+    fx, fy = F[:, :, 0], F[:, :, 1]
+    residual = [
+        root * ((fx**2).sum(axis=1) - 1) / 2,
+        root * ((fy**2).sum(axis=1) - 1) / 2,
+        root * (fx * fy).sum(axis=1) / np.sqrt(2),
+    ]
+    blocks = [
+        [sp.diags(root * fx[:, k]) @ gx for k in (0, 1)],
+        [sp.diags(root * fy[:, k]) @ gy for k in (0, 1)],
+        [
+            sp.diags(root / np.sqrt(2)) @ (sp.diags(fx[:, k]) @ gy + sp.diags(fy[:, k]) @ gx)
+            for k in (0, 1)
+        ],
+    ]
+    span = x[held.vertices[:, 1]] - x[held.vertices[:, 0]]
+    root = np.sqrt(_HOLD * area.mean()) / held.length**2
+    residual.append(root * ((span**2).sum(axis=1) - held.length**2) / 2)
+    rows = np.repeat(np.arange(len(span)), 2)
+    ends = held.vertices.ravel()
+    signs = np.tile([-1.0, 1.0], len(span))
+    blocks.append(
+        [
+            sp.csr_array(
+                (signs * np.repeat(root * span[:, k], 2), (rows, ends)), shape=(len(span), len(x))
+            )
+            for k in (0, 1)
+        ]
+    )
+    r = np.concatenate(residual)
+    by_axis = sp.vstack([sp.hstack(pair) for pair in blocks]).tocsc()
+    order = np.arange(2 * len(x)).reshape(2, -1).T.ravel()
+    return 0.5 * float(r @ r), r, by_axis[:, order]
+
+
+def _unfolded(x: FloatArray, gradient: tuple[sp.csr_array, sp.csr_array]) -> FloatArray:
+    """Return ``x`` unless a face is turned over in it."""
+    turned = int((np.linalg.det(_deformation(x, gradient)) <= 0).sum())
+    if turned:
+        raise SeatlookError(f"flattening folds {turned} faces over: cut the panel along a dart")
+    return x
