@@ -128,9 +128,3 @@ def test_bad_input_is_named(change, message):
     }
     with pytest.raises(InputError, match=message):
         wrinkle.wrinkle_indices(**(good | change))
-
-
-def test_weighted_quantile_counts_area_not_faces():
-    values, weight = np.array([0.0, 1.0, 5.0]), np.array([0.90, 0.08, 0.02])
-    assert wrinkle._weighted_quantile(values, weight, 0.95) == 1.0
-    assert wrinkle._weighted_quantile(values, weight, 0.99) == 5.0
