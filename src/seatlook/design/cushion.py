@@ -29,9 +29,9 @@ class Cushion:
     pillow : rise of the insert's middle above the trenches
     seat_y, fade_front, fade_rear : trench and insert come up to the bolsters' level over these
         lengths, so that no crease is left where front and rear panels are sewn on
-    roll, roll_front, roll_rear : radius at sides and corners, mid front, mid rear
+    roll, roll_front : radius at sides, corners and rear; in the middle of the front
     roll_angle : angle turned by the roll; beyond 90 degrees the wall leans inward
-    seam_angle, seam_front, seam_rear : where on the roll the top is sewn to the walls
+    seam_angle : where on the roll the top is sewn to the walls
     frame_height : level at which the cover ends; the foam's bottom is at 0
     """
 
@@ -45,19 +45,16 @@ class Cushion:
     crown_y: float = 0.010
     trench: float = 0.135
     trench_taper: float = 0.03
-    trench_depth: float = 0.036
-    bolster_width: float = 0.068
-    pillow: float = 0.022
+    trench_depth: float = 0.042
+    bolster_width: float = 0.070
+    pillow: float = 0.026
     seat_y: float = 0.03
     fade_front: float = 0.245
     fade_rear: float = 0.215
     roll: float = 0.046
     roll_front: float = 0.060
-    roll_rear: float = 0.046
     roll_angle: float = np.deg2rad(90.0)
     seam_angle: float = np.deg2rad(48.0)
-    seam_front: float = np.deg2rad(60.0)
-    seam_rear: float = np.deg2rad(48.0)
     frame_height: float = 0.025
 
     @property
@@ -77,8 +74,8 @@ class Cushion:
         trench = self.trench_x(y)
         out = np.clip(1 - (np.abs(x) - trench) / self.bolster_width, 0, 1)
         u = np.clip(np.abs(x) / trench, 0, 1)
-        # Quartic share: round shoulders, so the insert swells like a pillow between its seams.
-        inner = self.trench_depth - self.pillow * (1 - 0.4 * u**2 - 0.6 * u**4)
+        # Sixth power: round shoulders, so the insert swells like a pillow between its seams.
+        inner = self.trench_depth - self.pillow * (1 - 0.35 * u**2 - 0.65 * u**6)
         carved = np.where(np.abs(x) < trench, inner, self.trench_depth * out**2)
         fade = np.where(y < self.seat_y, self.fade_front, self.fade_rear)
         phase = np.clip((y - self.seat_y) / fade, -1, 1)
@@ -98,22 +95,17 @@ class Cushion:
         distance = np.where(inside, across.max(axis=1), reach - self.corner_radius)
         return p - distance[:, None] * normal, normal, distance
 
-    def rolls(self, foot: FloatArray, normal: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Roll radius and seam angle at points of the plan outline, each (k,)."""
+    def roll_radius(self, foot: FloatArray, normal: FloatArray) -> FloatArray:
+        """Roll radius (k,) at points of the plan outline."""
         core = self.half[0] - self.corner_radius
         bump = np.clip(1 - (foot[:, 0] / core) ** 2, 0, 1) ** 2
-        front, rear = bump * (normal[:, 1] < -0.99), bump * (normal[:, 1] > 0.99)
-        radius = self.roll + front * (self.roll_front - self.roll)
-        angle = self.seam_angle + front * (self.seam_front - self.seam_angle)
-        return (
-            radius + rear * (self.roll_rear - self.roll),
-            angle + rear * (self.seam_rear - self.seam_angle),
-        )
+        front = bump * (normal[:, 1] < -0.99)
+        return np.asarray(self.roll + front * (self.roll_front - self.roll))
 
     def position(self, p: FloatArray) -> FloatArray:
         """Map plane points p (k, 2) onto the surface, (k, 3)."""
         foot, normal, distance = self.outline(p)
-        radius, _ = self.rolls(foot, normal)
+        radius = self.roll_radius(foot, normal)
         way = np.maximum(distance + radius, 0)
         turned = np.minimum(way / radius, self.roll_angle)
         wall = way - turned * radius
@@ -130,9 +122,9 @@ class Cushion:
 
         The seam between top and walls where ``level`` is None, else the line at that height.
         """
-        radius, seam = self.rolls(feet, normals)
+        radius = self.roll_radius(feet, normals)
         if level is None:
-            way = radius * seam
+            way = radius * self.seam_angle
         else:
             plan = feet - (radius * (1 - np.sin(self.roll_angle)))[:, None] * normals
             fall = self.top(*plan.T) - radius * (1 - np.cos(self.roll_angle)) - level

@@ -27,7 +27,7 @@ MAX_HEXAGONAL_BIAS = 0.1
 
 _JITTER = 0.5  # of h, to each side; less leaves a six-fold lattice that steers buckles
 _CLEARANCE = 0.55  # of h; free points closer than this to a neighbour or a line are dropped
-_SMOOTHING_ROUNDS = 5
+_SMOOTHING_ROUNDS = 3
 _LATTICE = 0.865  # of h; thinning widens the mesh by the inverse (measured 1.156)
 _REPAIR_ROUNDS = 12
 _ATTEMPTS = 6
