@@ -1,0 +1,16 @@
+"""The command line: ``seatlook demo | check | evaluate | ...``."""
+
+from seatlook.cli import _demo, _machine, _run
+from seatlook.cli._app import app, main, run
+
+__all__ = ["app", "main", "run"]
+
+app.command(_demo.demo)
+app.command(_demo.flatten)
+app.command(_run.check)
+app.command(_run.evaluate)
+app.command(_run.solve)
+app.command(_run.wrinkle)
+app.command(_run.render)
+app.command(_machine.materials)
+app.command(_machine.doctor)

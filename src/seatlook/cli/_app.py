@@ -1,0 +1,58 @@
+"""One exit code per kind of failure, one way to say what went wrong.
+
+Exit codes: 0 good, 1 a limit of [accept] is missed, 2 wrong input, 3 solver or renderer failed,
+70 a fault of seatlook itself, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Sequence
+
+from cyclopts import App, CycloptsError
+
+from seatlook import __version__
+from seatlook.cli._output import say
+from seatlook.errors import SeatlookError
+
+_HELP = """Where a car-seat cover wrinkles, why, and whether anyone will see it.
+
+Start with: seatlook demo --out out/demo
+"""
+
+app = App(
+    name="seatlook",
+    help=_HELP,
+    version=__version__,
+    help_format="plaintext",
+    sort_key=None,
+    suppress_keyboard_interrupt=False,
+)
+
+
+def main() -> None:
+    """Run the command line and leave with its exit code."""
+    sys.exit(run())
+
+
+def run(tokens: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code; ``tokens`` default to the process's arguments."""
+    try:
+        code = app(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+    except CycloptsError as error:
+        say(f"seatlook: {error}", "see: seatlook --help")
+        return 2
+    except SeatlookError as error:
+        say(str(error))
+        return error.exit_code
+    except KeyboardInterrupt:
+        say("interrupted; no file was left half written")
+        return 130
+    except OSError as error:
+        say(f"{error.filename or 'file system'}: {error.strerror or error}")
+        return 2
+    except Exception:
+        say(traceback.format_exc(), "this is a fault of seatlook, not of the input")
+        return 70
+    return code if isinstance(code, int) else 0

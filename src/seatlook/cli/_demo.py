@@ -1,0 +1,198 @@
+"""The demo seat, and flat patterns from a design surface."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+from seatlook.cli._output import Json, progress, say, table
+from seatlook.cli._run import Out, Resume, Seed, evaluate_scene, load
+from seatlook.errors import InputError
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
+    from seatlook.design import Flattened
+
+Shares = Annotated[tuple[str, ...], Parameter(negative=())]
+
+
+def demo(
+    *,
+    out: Out = Path("out/demo"),
+    ease: Shares = (),
+    starve: Shares = (),
+    material: str = "leather-laminate",
+    insert: str | None = None,
+    element_size_mm: float = 7.0,
+    seed: Seed = 0,
+    resume: Resume = False,
+    json: Json = False,
+) -> int:
+    """Write the files of a seat cushion with a pattern that fits it, and evaluate them.
+
+    Leaves the design surface, foam, wires, pattern, seams and a commented scene.toml to start
+    from, and everything that "seatlook evaluate" leaves.
+
+    Example: seatlook demo --out out/demo
+
+    Example: seatlook demo --out out/eased --ease INSERT-BOLSTER_L=4%
+
+    Parameters
+    ----------
+    ease
+        SEAM=2%: make one sewing line of this seam longer than its partner, a sewing fault.
+    starve
+        PANEL=3%: make this panel narrower across its grain.
+    material
+        Cover material, from "seatlook materials list".
+    insert
+        Material of the middle panel, if it is another one.
+    element_size_mm
+        Mean edge length of the mesh.
+    """
+    wanted = _shares("--ease", ease), _shares("--starve", starve)
+    write_demo(
+        out,
+        ease=wanted[0],
+        starve=wanted[1],
+        material=material,
+        insert=insert or material,
+        element_size_mm=element_size_mm,
+        seed=seed or 0,
+    )
+    say(f"scene: {out / 'scene.toml'}")
+    return evaluate_scene(load(out / "scene.toml"), out, resume=resume, json=json)
+
+
+def flatten(
+    surface: Annotated[Path, Parameter(help="Design surface: OBJ, one group per panel.")],
+    /,
+    *,
+    out: Out,
+    unit: Literal["mm", "m"] = "mm",
+    ease: Shares = (),
+    starve: Shares = (),
+    allowance_mm: float = 10.0,
+    json: Json = False,
+) -> None:
+    """Cut a design surface along its panels' borders and flatten them into a pattern.
+
+    Writes pattern.dxf (AAMA), seams.toml and placement.toml, whose tables go into a scene; prints
+    the strain that each panel takes when it is laid back onto the surface.
+
+    Example: seatlook flatten cushion.obj --out pattern --ease INSERT-BOLSTER_L=2%
+
+    Parameters
+    ----------
+    unit
+        Unit of the surface file.
+    ease
+        SEAM=2%: make one sewing line of this seam longer than its partner.
+    starve
+        PANEL=3%: make this panel narrower across its grain.
+    allowance_mm
+        Seam allowance and hem round every panel.
+    """
+    from seatlook import design, io
+
+    read = io.read_surface(surface, unit=unit)
+    flat = design.flatten(
+        design.DesignSurface(**read._asdict()),
+        allowance=allowance_mm / 1e3,
+        ease=_shares("--ease", ease),
+        starve=_shares("--starve", starve),
+    )
+    _write_pattern(flat, out)
+    table(
+        ("panel", "area_cm2", "strain_mean", "strain_rms", "strain_smallest", "strain_largest"),
+        [(p.panel, 1e4 * p.area, p.mean, p.rms, p.smallest, p.largest) for p in flat.panels],
+        json=json,
+    )
+
+
+def write_demo(
+    out: Path,
+    *,
+    ease: dict[str, float],
+    starve: dict[str, float],
+    material: str,
+    insert: str,
+    element_size_mm: float,
+    seed: int,
+) -> None:
+    """Write the demo's design surface, foam, wires, pattern, seams and scene."""
+    from seatlook import design, files, io
+
+    thickness = io.read_material(material).fabric.thickness
+    io.read_material(insert)
+    with progress() as show:
+        show("flatten")
+        surface = design.demo_design()
+        flat = design.flatten(surface, ease=ease, starve=starve)
+        foam = design.demo_foam_mesh(cover_thickness=thickness)
+    io.write_surface(
+        io.GroupedMesh(surface.vertices, surface.faces, surface.panel, surface.panel_names),
+        out / "design.obj",
+    )
+    io.write_obj(foam.vertices, foam.faces, out / "foam.obj")
+    io.write_curves(foam.curves, out / "wires.toml")
+    _write_pattern(flat, out)
+    scene = _template("demo_scene.toml.j2").render(
+        material=material,
+        insert=insert,
+        element_size_mm=element_size_mm,
+        seed=seed,
+        placement=_placement(flat),
+        spoiled=[*(f"ease {k} {v:.1%}" for k, v in ease.items()),
+                 *(f"starve {k} {v:.1%}" for k, v in starve.items())],
+    )  # fmt: skip
+    files.write_text(out / "scene.toml", scene + "\n")
+
+
+def _write_pattern(flat: Flattened, out: Path) -> None:
+    from seatlook import files, io
+
+    io.write_dxf(flat.pattern, out / "pattern.dxf", style="seatlook")
+    io.write_seams(flat.pattern, out / "seams.toml")
+    files.write_text(out / "placement.toml", _placement(flat) + "\n")
+
+
+def _placement(flat: Flattened) -> str:
+    """[placement.PANEL] tables as they stand in a scene."""
+    return "\n\n".join(
+        f"[placement.{name}]\n"
+        f"rotation = {pose.rotation.tolist()}\n"
+        f"translation_mm = {(1e3 * pose.translation).tolist()}"
+        for name, pose in flat.placement.items()
+    )
+
+
+def _template(name: str) -> Template:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=False,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template(name)
+
+
+def _shares(option: str, words: tuple[str, ...]) -> dict[str, float]:
+    """Read NAME=2% (or NAME=0.02) into fractions."""
+    shares = {}
+    for word in words:
+        name, _, text = word.rpartition("=")
+        try:
+            value = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+        except ValueError:
+            name = ""
+        if not name:
+            raise InputError.single(option, got=repr(word), expected="NAME=2%")
+        shares[name] = value
+    return shares

@@ -1,0 +1,82 @@
+"""What commands write: tables and JSON on stdout, progress and sentences on stderr."""
+
+from __future__ import annotations
+
+import json as json_module
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Annotated, Any, Protocol
+
+from cyclopts import Parameter
+
+Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, not a table.")]
+
+
+class Say(Protocol):
+    """Tell how far a step is; figures of a step that can be counted are ``step`` and ``steps``."""
+
+    def __call__(self, name: str, /, **figures: float | str) -> None: ...
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[Any]], *, json: bool) -> None:
+    """Print rows on stdout: aligned text, or a JSON list of objects.
+
+    A table of ("what", "value") is one JSON object.
+    """
+    rows = list(rows)
+    if json:
+        pairs = tuple(heads) == ("what", "value")
+        data = dict(rows) if pairs else [dict(zip(heads, row, strict=True)) for row in rows]
+        sys.stdout.write(json_module.dumps(data, indent=1) + "\n")
+        return
+    cells = [list(heads), *([_text(cell) for cell in row] for row in rows)]
+    widths = [max(len(row[k]) for row in cells) for k in range(len(heads))]
+    for row in cells:
+        line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        sys.stdout.write(line.rstrip() + "\n")
+
+
+def say(*lines: str) -> None:
+    """Write lines to stderr."""
+    for line in lines:
+        sys.stderr.write(line.rstrip() + "\n")
+
+
+@contextmanager
+def progress() -> Iterator[Say]:
+    """Show a bar on stderr while the block runs; nothing where nobody watches."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    with Progress(
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=24),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[figures]}"),
+        console=console,
+        disable=not console.is_terminal,
+        transient=True,
+    ) as bar:
+        task = bar.add_task("", total=None, figures="")
+
+        def show(name: str, /, **figures: float | str) -> None:
+            done, total = figures.pop("step", None), figures.pop("steps", None)
+            words = [name, *(str(v) for v in figures.values() if isinstance(v, str))]
+            numbers = (f"{k} {v:.2g}" for k, v in figures.items() if not isinstance(v, str))
+            bar.update(
+                task,
+                description=" ".join(words),
+                figures="  ".join(numbers),
+                total=total,
+                completed=done or 0,
+            )
+
+        yield show
+
+
+def _text(cell: Any) -> str:
+    if cell is None:
+        return "-"
+    return f"{cell:.4g}" if isinstance(cell, float) else str(cell)

@@ -1,0 +1,255 @@
+"""Commands that take a scene through the chain, whole or link by link."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from seatlook.cli._output import Json, progress, say, table
+from seatlook.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from seatlook.evaluate import Evaluation
+    from seatlook.model import Scene, Solution
+    from seatlook.wrinkle import ZoneRow
+
+SceneFile = Annotated[Path, Parameter(help="Scene file (TOML).")]
+ResultFile = Annotated[Path, Parameter(help='Result file of "seatlook solve" (.npz).')]
+Out = Annotated[Path, Parameter(help="Folder to write to.")]
+Seed = Annotated[
+    int | None, Parameter(help="Seed of mesh jitter and imperfection, instead of the scene's.")
+]
+ElementSize = Annotated[
+    float | None, Parameter(help="Mean edge length of the mesh, instead of the scene's.")
+]
+Resume = Annotated[
+    bool,
+    Parameter(negative=(), help="Take the result in the folder if it is of this very scene."),
+]
+Names = Annotated[tuple[str, ...], Parameter(negative=())]
+
+
+def check(
+    scene: SceneFile,
+    /,
+    *,
+    seed: Seed = None,
+    element_size_mm: ElementSize = None,
+    json: Json = False,
+) -> None:
+    """Read a scene with all its files, mesh it, and say what would be solved; solve nothing.
+
+    Example: seatlook check seat.toml
+    """
+    from seatlook.assembly import assemble
+    from seatlook.solver.contact import foam_wavelength
+
+    read = load(scene, seed, element_size_mm)
+    cover = assemble(read)
+    wave = min(foam_wavelength(m.fabric, read.foam.material) for m in cover.materials)
+    table(
+        ("what", "value"),
+        [
+            ("scene", read.name),
+            ("panels", len(cover.panel_names)),
+            ("seams", len(cover.stitchings)),
+            ("hooks_and_frames", len(cover.anchors)),
+            ("vertices", len(cover.rest)),
+            ("triangles", len(cover.faces)),
+            ("element_size_mm", 1e3 * cover.element_size),
+            ("wavelength_mm", 1e3 * wave),
+            ("wavelength_over_element_size", wave / cover.element_size),
+        ],
+        json=json,
+    )
+
+
+def evaluate(
+    scene: SceneFile,
+    /,
+    *,
+    out: Out,
+    seed: Seed = None,
+    element_size_mm: ElementSize = None,
+    resume: Resume = False,
+    json: Json = False,
+) -> int:
+    """Solve a scene, judge its wrinkles, draw it, and write the gallery page.
+
+    Leaves index.html, result.npz, zones.csv, images and maps in the folder. Ends with 1 if a
+    limit of [accept] is missed, and names zone and value.
+
+    Example: seatlook evaluate seat.toml --out out/seat
+    """
+    return evaluate_scene(load(scene, seed, element_size_mm), out, resume=resume, json=json)
+
+
+def evaluate_scene(scene: Scene, out: Path, *, resume: bool, json: bool) -> int:
+    """Evaluate a scene, print its zones and return the exit code."""
+    from seatlook.evaluate import evaluate as run_chain
+    from seatlook.report.gather import write_report
+
+    with progress() as show:
+        evaluation = run_chain(scene, out, resume=resume, progress=show)
+    page = write_report(evaluation)
+    _print_zones(evaluation.zones, json=json)
+    say(f"gallery: {page}")
+    return _exit_code(evaluation)
+
+
+def solve(
+    scene: SceneFile,
+    /,
+    *,
+    out: Annotated[Path, Parameter(help="Result file to write (.npz).")],
+    seed: Seed = None,
+    element_size_mm: ElementSize = None,
+    json: Json = False,
+) -> int:
+    """Sew, hook and cover a scene, and keep the result; nothing is drawn.
+
+    A result that is not converged is written as well, says so, and ends with 3.
+
+    Example: seatlook solve seat.toml --out seat.npz
+    """
+    from seatlook import io
+    from seatlook.assembly import assemble
+    from seatlook.solver import solve as run_solver
+
+    if out.suffix != ".npz":
+        raise InputError.single("--out", got=out.name, expected="a name that ends in .npz")
+    cover = assemble(load(scene, seed, element_size_mm))
+    with progress() as show:
+        solution = run_solver(
+            cover, strict=False, progress=lambda **figures: show("solve", **figures)
+        )
+    io.write_result(solution, out)
+    table(
+        ("what", "value"),
+        [("status", solution.status), ("reason", solution.reason), *solution.figures.items()],
+        json=json,
+    )
+    return _solved(solution)
+
+
+def wrinkle(scene: SceneFile, result: ResultFile, /, *, json: Json = False) -> None:
+    """Print the wrinkle indices of a result, zone by zone; nothing is solved.
+
+    Example: seatlook wrinkle seat.toml seat.npz --json
+    """
+    from seatlook.evaluate import wrinkle_map
+    from seatlook.wrinkle import zone_table
+
+    read = load(scene)
+    solution = _result(read, result)
+    _print_zones(zone_table(solution, wrinkle_map(read, solution)), json=json)
+
+
+def render(
+    scene: SceneFile,
+    result: ResultFile,
+    /,
+    *,
+    out: Out,
+    texture: Names = (),
+    rig: Names = (),
+    view: str | None = None,
+    maps: Annotated[bool, Parameter(help="Draw the wrinkle maps as well.")] = True,
+) -> None:
+    """Draw a result under the lights of a scene; nothing is solved.
+
+    Example: seatlook render seat.toml seat.npz --out pictures --texture suede --rig sun
+
+    Parameters
+    ----------
+    texture
+        Texture of the scene's gallery; may be given more than once. All of them if not given.
+    rig
+        Rig of the scene; may be given more than once. All of them if not given.
+    view
+        Camera of the scene. The first if not given.
+    """
+    from seatlook.evaluate import draw_maps, draw_pictures, wrinkle_map
+    from seatlook.pbr import offscreen_backend
+
+    offscreen_backend()
+    read = load(scene)
+    cameras = {camera.name: camera for camera in read.cameras}
+    rigs = {r.name: r for r in read.rigs}
+    chosen = replace(
+        read,
+        rigs=tuple(rigs[name] for name in _chosen("--rig", rig, rigs)),
+        textures={
+            name: read.textures[name] for name in _chosen("--texture", texture, read.textures)
+        },
+    )
+    camera = cameras[_chosen("--view", (view,) if view else (), cameras)[0]]
+    solution = _result(read, result)
+    with progress() as show:
+        draw_pictures(chosen, solution, camera, out, show)
+        if maps:
+            draw_maps(solution, wrinkle_map(read, solution), camera, out, show)
+
+
+def load(path: Path, seed: int | None = None, element_size_mm: float | None = None) -> Scene:
+    """Read a scene, with what the command line overrides."""
+    from seatlook import io
+
+    scene: Scene = io.load_scene(path)
+    return replace(
+        scene,
+        seed=scene.seed if seed is None else seed,
+        element_size=scene.element_size if element_size_mm is None else element_size_mm / 1e3,
+    )
+
+
+def _result(scene: Scene, path: Path) -> Solution:
+    """Read a result; say so if it is not of this scene as it now is."""
+    from seatlook import io
+
+    solution: Solution = io.read_result(path)
+    if solution.cover.scene_digest != scene.digest:
+        say(f"{path}: solved for another state of {scene.path}; its shape is shown as it was")
+    return solution
+
+
+def _chosen(option: str, names: tuple[str, ...], known: Iterable[str]) -> tuple[str, ...]:
+    """Return the names, or all known ones if none is given; refuse others."""
+    known = tuple(known)
+    for name in names:
+        if name not in known:
+            raise InputError.single(
+                option,
+                got=repr(name),
+                expected=f"one of {', '.join(known)}",
+                hint=did_you_mean(name, known),
+            )
+    return names or known
+
+
+def _print_zones(zones: tuple[ZoneRow, ...], *, json: bool) -> None:
+    table([f.name for f in fields(zones[0])], [astuple(row) for row in zones], json=json)
+
+
+def _solved(solution: Solution) -> int:
+    if solution.status == "converged":
+        return 0
+    say(f"not converged: {solution.reason}")
+    return 3
+
+
+def _exit_code(evaluation: Evaluation) -> int:
+    """3 if not converged, 1 if a limit is missed, each said on stderr."""
+    for verdict in evaluation.verdicts:
+        if not verdict.kept:
+            limit = verdict.limit
+            say(
+                f"{limit.zone}: {limit.measure} is {verdict.value:.4g}, "
+                f"the limit is {limit.maximum:.4g}"
+            )
+    return _solved(evaluation.solution) or int(not evaluation.accepted)

@@ -1,0 +1,184 @@
+"""From an evaluation to what its page shows."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Iterator, Mapping
+from importlib.metadata import version
+from pathlib import Path
+from types import MappingProxyType
+
+from seatlook import __version__
+from seatlook.evaluate import MAPS, RESULT, Evaluation, label
+from seatlook.model import Light, Rig, Solution
+from seatlook.pbr import ev100, lux_at_seat, offscreen_backend
+from seatlook.report.chart import number
+from seatlook.report.data import Check, MapView, PageData, RigHead, Table
+from seatlook.report.page import write_page
+from seatlook.report.parameters import parameter_table
+from seatlook.solver import foam_wavelength
+
+# figure -> what it is, its limit, factor to the unit, unit
+_CONDITIONS: Mapping[str, tuple[str, float, float, str]] = {
+    "residual": ("out-of-balance force over mean elastic force", 1e-3, 1.0, ""),
+    "seam_gap_max": ("largest seam gap", 1e-4, 1e3, " mm"),
+    "kinetic_share": ("kinetic over elastic energy", 1e-4, 1.0, ""),
+}
+_LOOSE_MESH = 8.0  # lambda / h below which the wrinkles' shape is not resolved
+_FINE_MESH = 12.0  # lambda / h from which the indices are
+
+
+def write_report(evaluation: Evaluation) -> Path:
+    """Write the gallery page of an evaluation into its folder and return its path."""
+    return write_page(page_data(evaluation), evaluation.folder)
+
+
+def page_data(evaluation: Evaluation) -> PageData:
+    """Gather what the page shows."""
+    scene, solution = evaluation.scene, evaluation.solution
+    waves = {
+        m.name: foam_wavelength(m.fabric, scene.foam.material) for m in solution.cover.materials
+    }
+    return PageData(
+        title=scene.name,
+        camera=evaluation.camera.name,
+        size=evaluation.camera.size,
+        pixels_per_degree=evaluation.camera.pixels_per_degree,
+        textures=tuple(scene.textures),
+        rigs=tuple(_head(rig) for rig in scene.rigs),
+        pictures=evaluation.pictures,
+        maps=tuple(_maps(evaluation)),
+        zones=_zones(evaluation),
+        parameters=parameter_table(scene),
+        provenance=MappingProxyType(dict(_provenance(evaluation, waves))),
+        status=solution.status,
+        checks=(*_conditions(solution), *_limits(evaluation)),
+        warnings=tuple(_warnings(evaluation, waves)),
+        history=MappingProxyType(
+            {name: tuple(map(float, column)) for name, column in solution.history.items()}
+        ),
+        files=(RESULT, "zones.csv"),
+    )
+
+
+def _head(rig: Rig) -> RigHead:
+    lights = [_described(light) for light in rig.lights]
+    if rig.ambient > 0:
+        lights.append(f"sky, {number(rig.ambient)} cd/m2")
+    return RigHead(
+        name=rig.name,
+        ev100=ev100(rig),
+        illuminance=lux_at_seat(rig)["total"],
+        lights=tuple(lights),
+    )
+
+
+def _described(light: Light) -> str:
+    if light.near:
+        x, y, z = (number(round(1e3 * v)) for v in light.vector)
+        return f"{light.name}, {number(light.intensity)} cd at ({x}, {y}, {z}) mm"
+    return f"{light.name}, {number(light.intensity)} lx facing"
+
+
+def _maps(evaluation: Evaluation) -> Iterator[MapView]:
+    for name, (path, picture) in evaluation.maps.items():
+        low, high = picture.value_range
+        yield MapView(
+            name=label(name),
+            image=path,
+            low=low,
+            high=high,
+            colours=picture.colours,
+            meaning=MAPS[name],
+        )
+
+
+def _zones(evaluation: Evaluation) -> Table:
+    """Zone table without the free edges, which are clamped or trimmed and say nothing."""
+    return Table(
+        heads=(
+            "zone",
+            "area [cm2]",
+            "W2 mean",
+            "W2 95 %",
+            "W2 above 1 [% of area]",
+            "W_stretch mean",
+            "W_compression mean",
+        ),
+        rows=tuple(
+            (
+                row.zone,
+                1e4 * row.area,
+                row.w2_mean,
+                row.w2_p95,
+                100 * row.w2_area_share,
+                row.w_stretch_mean,
+                row.w_compression_mean,
+            )
+            for row in evaluation.zones
+            if row.zone != "free edge"
+        ),
+    )
+
+
+def _conditions(solution: Solution) -> Iterator[Check]:
+    for name, (what, limit, factor, unit) in _CONDITIONS.items():
+        value = solution.figures[name]
+        yield Check(
+            name=what,
+            value=f"{number(factor * value)}{unit}",
+            limit=f"{number(factor * limit)}{unit}",
+            kept=value <= limit,
+        )
+
+
+def _limits(evaluation: Evaluation) -> Iterator[Check]:
+    for verdict in evaluation.verdicts:
+        yield Check(
+            name=f"{verdict.limit.zone}: {verdict.limit.measure}",
+            value=number(verdict.value),
+            limit=number(verdict.limit.maximum),
+            kept=verdict.kept,
+        )
+
+
+def _warnings(evaluation: Evaluation, waves: Mapping[str, float]) -> Iterator[str]:
+    solution, h = evaluation.solution, evaluation.solution.cover.element_size
+    if solution.status != "converged":
+        yield f"The solution is not converged: {solution.reason}."
+    for name, wave in waves.items():
+        if wave < _LOOSE_MESH * h:
+            yield (
+                f"{name}: elements of {number(1e3 * h)} mm are coarser than an eighth of its "
+                f"wavelength of {number(1e3 * wave)} mm; shape and indices are not resolved."
+            )
+        elif wave < _FINE_MESH * h:
+            yield (
+                f"{name}: elements of {number(1e3 * h)} mm resolve the shape of its wrinkles "
+                f"(wavelength {number(1e3 * wave)} mm), but not yet the indices, which need a "
+                "twelfth."
+            )
+
+
+def _provenance(evaluation: Evaluation, waves: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+    scene, solution = evaluation.scene, evaluation.solution
+    cover = solution.cover
+    yield "seatlook", __version__
+    yield "solved with", solution.version
+    for package in ("numpy", "scipy", "numba", "vtk"):
+        yield package, version(package)
+    yield "python", platform.python_version()
+    yield "drawn with", offscreen_backend().window
+    yield "scene", scene.path.name if scene.path else scene.name
+    yield "scene digest (sha256)", scene.digest
+    yield "seed", str(cover.seed)
+    yield "vertices, triangles", f"{len(cover.rest)}, {len(cover.faces)}"
+    yield "element size h", f"{number(1e3 * cover.element_size)} mm"
+    for name, wave in waves.items():
+        yield (
+            f"wavelength lambda of {name}",
+            f"{number(1e3 * wave)} mm, lambda / h = {number(wave / cover.element_size)}",
+        )
+    yield "solver status", solution.status
+    for name, value in solution.figures.items():
+        yield f"solver {name.replace('_', ' ')}", number(value)

@@ -1,0 +1,78 @@
+"""The parameter table: every number of a run under the name it has in the files."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from seatlook.model import Appearance, Curve, Scene
+from seatlook.report.chart import number
+from seatlook.report.data import Table
+
+# field -> (key in the files, factor from SI); a field that is not here is named alike and has no
+# unit.
+_FILE_KEYS: Mapping[str, tuple[str, float]] = {
+    "thickness": ("thickness_mm", 1e3),
+    "density": ("density_kg_per_m2", 1.0),
+    "warp": ("warp_n_per_m", 1.0),
+    "weft": ("weft_n_per_m", 1.0),
+    "shear": ("shear_n_per_m", 1.0),
+    "bending_warp": ("bending_warp_n_m", 1.0),
+    "bending_weft": ("bending_weft_n_m", 1.0),
+    "bending_twist": ("bending_twist_n_m", 1.0),
+    "c_threshold": ("c_threshold_per_mm", 1e-3),
+    "texture_scale": ("texture_scale_mm", 1e3),
+    "texture_depth": ("texture_depth_mm", 1e3),
+    "stress": ("stress_kpa", 1e-3),
+    "young": ("young_kpa", 1e-3),
+    "element_size": ("element_size_mm", 1e3),
+    "smallest_notch": ("smallest_notch_mm", 1e3),
+}
+_SCENE = ("element_size", "smallest_notch", "seed", "curvature", "c_threshold")
+Row = tuple[str, str, str, str | None]
+
+
+def parameter_table(scene: Scene) -> Table:
+    """List the scene's settings, its cover materials, foam and textures, each with its source."""
+    rows: list[Row] = [("scene", *_entry(name, getattr(scene, name)), None) for name in _SCENE]
+    for material in {m.name: m for m in scene.materials.values()}.values():
+        rows += _rows(material.name, material.fabric, material.source)
+        rows += _rows(material.name, material.appearance, material.source)
+        if material.c_threshold is not None:
+            key, value = _entry("c_threshold", material.c_threshold)
+            rows.append((material.name, key, value, material.source.get(key)))
+    foam = scene.foam.material
+    rows += _rows(foam.name, foam, foam.source)
+    for name, appearance in scene.textures.items():
+        if isinstance(appearance, Appearance):
+            rows += _rows(f"texture {name}", appearance, {})
+    return Table(heads=("of", "key", "value", "source"), rows=tuple(rows))
+
+
+def _rows(owner: str, values: Any, source: Mapping[str, str]) -> Iterator[Row]:
+    for field in dataclasses.fields(values):
+        if field.name not in ("name", "source"):
+            key, value = _entry(field.name, getattr(values, field.name))
+            yield owner, key, value, source.get(key)
+
+
+def _entry(name: str, value: Any) -> tuple[str, str]:
+    """Return the key and the value as the files have them."""
+    key, factor = _FILE_KEYS.get(name, (name, 1.0))
+    return key, _written(value, factor)
+
+
+def _written(value: Any, factor: float) -> str:
+    if isinstance(value, Curve):
+        stiffness = _written(value.stiffness, factor)
+        return (
+            stiffness if len(value.strain) == 1 else f"{stiffness} at {_written(value.strain, 1)}"
+        )
+    if isinstance(value, np.ndarray):
+        return ", ".join(number(factor * float(v)) for v in value)
+    if isinstance(value, float):
+        return number(factor * value)
+    return str(value)
