@@ -16,7 +16,13 @@ def rectangle(kind, length, width, h, *, seed=0):
     if kind == "sliver":
         rng = np.random.default_rng(seed)
         inside = (X > 1e-9).all(axis=1) & (X < np.array([length, width]) - 1e-9).all(axis=1)
-        X[inside] += rng.uniform(-0.3, 0.3, (inside.sum(), 2)) * [length / nx, width / ny]
+        # Within a disc of 0.3 h no triangle turns over: angles down to about 5 degrees.
+        r, phi = (
+            0.3 * np.sqrt(rng.uniform(size=inside.sum())),
+            rng.uniform(0, 2 * np.pi, inside.sum()),
+        )
+        step = np.stack([r * np.cos(phi), r * np.sin(phi)], axis=1)
+        X[inside] += step * [length / nx, width / ny]
     return X, T
 
 

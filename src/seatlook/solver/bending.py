@@ -9,6 +9,8 @@ from seatlook.model import FloatArray
 from seatlook.solver.edgeslope import Edges, Rows, gradient_matrices
 from seatlook.solver.kernels.bending import quadratic
 
+_JUMP = 0.2
+
 
 def curvature_operator(
     count: int, area: FloatArray, edges: Edges, rows: Rows, stiffness: FloatArray
@@ -37,6 +39,11 @@ def curvature_operator(
 class Bending:
     """Bending energy ``1/2 sum A k . D k`` [J] of all panels; quadratic in the positions.
 
+    Differences of slopes make a wave of wave number q too soft by (q h)^2 / 6. The jump of the
+    curvature between neighbours sees what is missing: it vanishes for quadratics, and a fifth of
+    it (``_JUMP``) brings the buckling load of a sheet on a soft bed within 1 % at eight edges per
+    wavelength, on regular and irregular meshes alike.
+
     Parameters
     ----------
     operator : (3m, n) sparse [1/m2]      from ``curvature_operator``
@@ -44,8 +51,11 @@ class Bending:
     stiffness : (m, 3, 3) float64 [N m]
     """
 
-    def __init__(self, operator: csr_array, area: FloatArray, stiffness: FloatArray) -> None:
+    def __init__(
+        self, edges: Edges, operator: csr_array, area: FloatArray, stiffness: FloatArray
+    ) -> None:
         weight = _blocks(area[:, None, None] * stiffness)
+        weight = weight + _jumps(edges, area, stiffness)
         matrix = csr_array(operator.T @ (weight @ operator))
         matrix = csr_array(0.5 * (matrix + matrix.T))
         matrix.sort_indices()
@@ -79,6 +89,21 @@ def _blocks(blocks: FloatArray) -> csr_array:
     m = len(blocks)
     columns = np.repeat(np.arange(3 * m).reshape(m, 1, 3), 3, axis=1).ravel()
     return csr_array((blocks.ravel(), columns, 3 * np.arange(3 * m + 1)), shape=(3 * m, 3 * m))
+
+
+def _jumps(edges: Edges, area: FloatArray, stiffness: FloatArray) -> csr_array:
+    """Weight (3m, 3m) of the curvature jump across every inner edge."""
+    m = len(area)
+    first, second = edges.faces[~edges.free].T
+    share = _JUMP * (area[first] + area[second]) / 3.0
+    block = share[:, None, None] * 0.5 * (stiffness[first] + stiffness[second])
+    rows = (3 * np.stack([first, first, second, second], axis=1))[:, :, None, None]
+    columns = (3 * np.stack([first, second, first, second], axis=1))[:, :, None, None]
+    values = np.array([1.0, -1.0, -1.0, 1.0])[:, None, None] * block[:, None]
+    shape = values.shape
+    i = np.broadcast_to(rows + np.arange(3)[:, None], shape).ravel()
+    j = np.broadcast_to(columns + np.arange(3), shape).ravel()
+    return csr_array((values.ravel(), (i, j)), shape=(3 * m, 3 * m))
 
 
 def _condensation(edges: Edges, stiffness: FloatArray) -> csr_array:

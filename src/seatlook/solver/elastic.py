@@ -56,7 +56,7 @@ class ElasticSheet:
         rows = slope_rows(rest, faces, self.edges)
         self._curvature = curvature_operator(len(rest), self.area, self.edges, rows, stiffness)
         self.membrane = Membrane(self.edges, self._curvature, self.area, panel, self._fabrics)
-        self.bending = Bending(self._curvature, self.area, stiffness)
+        self.bending = Bending(self.edges, self._curvature, self.area, stiffness)
 
     @property
     def energies(self) -> tuple[Energy, ...]:
