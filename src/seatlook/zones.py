@@ -8,6 +8,7 @@ import numpy as np
 
 from seatlook.model import FloatArray, IntArray, Pattern, ZoneBox
 
+FREE_EDGE = "free edge"
 BAND = 0.015  # [m] width of a seam band on each side, and of the free-edge band
 
 
@@ -33,7 +34,7 @@ def zones(
     """
     names = [
         *(box.name for box in boxes),
-        "free edge",
+        FREE_EDGE,
         *(f"seam {seam.name}" for seam in pattern.seams),
         *(f"{p.name} interior" for p in pattern.panels),
     ]
@@ -51,7 +52,7 @@ def zones(
             chosen[closer] = index[f"seam {sewn[edge.name]}"]
             nearest[closer] = distance[closer]
         for line in _free_polylines(pattern, p.name, sewn):
-            chosen[distance_to_polyline(points, line) < BAND] = index["free edge"]
+            chosen[distance_to_polyline(points, line) < BAND] = index[FREE_EDGE]
         for box in (b for b in boxes if b.panel == p.name):
             inside = ((points >= box.low) & (points <= box.high)).all(axis=1)
             chosen[inside] = index[box.name]

@@ -7,18 +7,26 @@ from typing import Any
 
 # name -> module
 _PUBLIC: dict[str, str] = {
+    "GroupedMesh": "surface",
     "list_foam_materials": "material",
     "list_materials": "material",
+    "load_scene": "scene",
     "materials_dir": "material",
+    "read_curves": "curves",
     "read_dxf": "dxf",
+    "read_foam": "mesh",
     "read_foam_material": "material",
     "read_material": "material",
     "read_panels": "seams",
     "read_pattern": "seams",
     "read_result": "result",
+    "read_surface": "surface",
+    "write_curves": "curves",
     "write_dxf": "dxf_write",
+    "write_obj": "surface",
     "write_result": "result",
     "write_seams": "seams",
+    "write_surface": "surface",
 }
 
 __all__ = list(_PUBLIC)

@@ -8,7 +8,7 @@ parts of a file refer to are checked by the reader of that file. Defaults are in
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -18,6 +18,7 @@ from seatlook.errors import did_you_mean
 from seatlook.io._toml import Document, Key
 
 MM = 1e-3
+LISTED = 16  # a message names no more choices than this
 
 
 class Kind(Protocol):
@@ -106,10 +107,7 @@ class Text:
     def read(self, document: Document, key: Key, value: Any) -> str | None:
         if not isinstance(value, str) or not value:
             document.report(key, shown(value), "a text")
-        elif self.choices and value not in self.choices:
-            hint = did_you_mean(value, self.choices)
-            document.report(key, shown(value), f"one of {', '.join(self.choices)}", hint)
-        else:
+        elif not self.choices or known(document, key, value, self.choices, "a choice"):
             return value
         return None
 
@@ -150,8 +148,9 @@ def _is_array(value: Any, shape: tuple[int | None, ...]) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Texts:
-    """A list of texts; with ``or_one`` a single text stands for a list of one."""
+    """A list of texts, out of ``choices`` if any; with ``or_one`` a text is a list of one."""
 
+    choices: tuple[str, ...] = ()
     or_one: bool = False
     default: tuple[str, ...] | None = None
     required: bool = False
@@ -159,7 +158,10 @@ class Texts:
     def read(self, document: Document, key: Key, value: Any) -> tuple[str, ...] | None:
         values = [value] if self.or_one and isinstance(value, str) else value
         if isinstance(values, list) and values and all(isinstance(v, str) and v for v in values):
-            return tuple(values)
+            if not self.choices:
+                return tuple(values)
+            known_all = [known(document, key, v, self.choices, "a choice") for v in values]
+            return tuple(values) if all(known_all) else None
         single = "a text or " if self.or_one else ""
         document.report(key, shown(value), f"{single}a list of texts")
         return None
@@ -209,7 +211,7 @@ class Named:
 class Rows:
     """An array of tables, as ``[[seam]]``; the value of ``unique`` may not repeat."""
 
-    table: Table
+    table: Kind
     unique: str = "name"
     required: bool = False
 
@@ -227,6 +229,19 @@ class Rows:
                     (*key, i, self.unique), shown(name), f"a name not used before (line {line})"
                 )
         return rows
+
+
+def known(
+    document: Document, key: Key, name: str | None, choices: Iterable[str], what: str
+) -> bool:
+    """Report a name that is not among ``choices``; a missing one is reported already."""
+    names = tuple(choices)
+    if name is None or name in names:
+        return name is not None
+    listed = f"one of {', '.join(names)}" if len(names) <= LISTED else what
+    expected = listed if names else f"{what}; there are none"
+    document.report(key, shown(name), expected, did_you_mean(name, names))
+    return False
 
 
 def read_table(document: Document, keys: Mapping[str, Kind]) -> dict[str, Any]:

@@ -89,6 +89,19 @@ def spelled(key: Key) -> str:
     return text
 
 
+def quoted(text: str) -> str:
+    r"""Spell a text as a TOML string.
+
+    Examples
+    --------
+    >>> print(quoted('left "A"'))
+    "left \"A\""
+    """
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    escaped = "".join(c if c >= " " and c != "\x7f" else f"\\u{ord(c):04x}" for c in escaped)
+    return f'"{escaped}"'
+
+
 def read_document(path: Path) -> Document:
     """Read and parse a TOML file.
 

@@ -30,7 +30,7 @@ from seatlook.io._schema import (
     read_table,
     shown,
 )
-from seatlook.io._toml import Document, read_document
+from seatlook.io._toml import Document, quoted, read_document
 from seatlook.io.dxf import Units, read_dxf
 from seatlook.model import Edge, FloatArray, Panel, Pattern, Seam
 
@@ -231,16 +231,3 @@ def write_seams(pattern: Pattern, path: Path) -> None:
             f"length_b_mm = {1e3 * length_b:.3f}"
         )
     write_text(path, "\n\n".join(blocks) + "\n")
-
-
-def quoted(text: str) -> str:
-    r"""Spell a text as a TOML string.
-
-    Examples
-    --------
-    >>> print(quoted('left "A"'))
-    "left \"A\""
-    """
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    escaped = "".join(c if c >= " " and c != "\x7f" else f"\\u{ord(c):04x}" for c in escaped)
-    return f'"{escaped}"'

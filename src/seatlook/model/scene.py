@@ -18,6 +18,9 @@ from seatlook.model.pattern import Pattern
 
 CurvatureMode = Literal["paper", "tensor"]
 
+# What [accept] can limit: fields of a zone's row in the table of wrinkle indices.
+MEASURES = ("w2_mean", "w2_p95", "w2_area_share", "w_stretch_mean", "w_compression_mean")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pose:

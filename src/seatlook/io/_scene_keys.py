@@ -1,0 +1,99 @@
+"""Every key of a scene file, with its type, range and default; docs/scene.md explains them."""
+
+from __future__ import annotations
+
+from seatlook.io._schema import MM, Array, Integer, Kind, Named, Number, Rows, Table, Text, Texts
+from seatlook.io._views import CAMERA, RIG
+from seatlook.model.scene import MEASURES
+
+AS_BUILT = "as built"
+_NAME = Text(required=True)
+
+KEYS: dict[str, Kind] = {
+    "schema": Integer(low=1, high=1, required=True),
+    "name": Text(),
+    "pattern": Table(
+        {
+            "file": Text(required=True),
+            "seams": Text(required=True),
+            "size": Text(),
+            "units": Text(choices=("metric", "english")),
+            "material": Text(),
+        },
+        required=True,
+    ),
+    "foam": Table(
+        {
+            "file": Text(required=True),
+            "unit": Text(choices=("mm", "m"), required=True),
+            "up": Text(choices=("z", "y"), default="z"),
+            "material": Text(required=True),
+            "curves": Text(),
+        },
+        required=True,
+    ),
+    "mesh": Table(
+        {
+            "element_size_mm": Number(low=0.5, high=100, scale=MM, required=True),
+            "smallest_notch_mm": Number(low=0, high=100, scale=MM, default=5.0),
+            "seed": Integer(default=0),
+        },
+        required=True,
+    ),
+    "placement": Named(
+        Table(
+            {
+                "axes": Texts(),
+                "rotation": Array(shape=(3, 3)),
+                "translation_mm": Array(shape=(3,), scale=MM, required=True),
+            }
+        )
+    ),
+    "panel": Named(Table({"material": Text(), "grain_deg": Number(low=-360, high=360)})),
+    "stage": Rows(
+        Table(
+            {
+                "name": _NAME,
+                "start_s": Number(low=0, required=True),
+                "end_s": Number(above=0, required=True),
+            }
+        ),
+        required=True,
+    ),
+    "hook": Rows(Table(dict.fromkeys(("name", "line", "wire", "stage"), _NAME))),
+    "frame": Rows(
+        Table(
+            {
+                "name": _NAME,
+                "edges": Texts(or_one=True, required=True),
+                "curve": _NAME,
+                "stage": _NAME,
+            }
+        )
+    ),
+    "rig": Rows(Table(RIG), required=True),
+    "camera": Table(CAMERA),
+    "gallery": Table({"textures": Texts(or_one=True, default=(AS_BUILT,))}),
+    "zones": Table(
+        {
+            "box": Rows(
+                Table(
+                    {
+                        "name": _NAME,
+                        "panel": _NAME,
+                        "low_mm": Array(shape=(2,), scale=MM, required=True),
+                        "high_mm": Array(shape=(2,), scale=MM, required=True),
+                        "class": Text(choices=("A", "B", "C"), default="A"),
+                    }
+                )
+            )
+        }
+    ),
+    "wrinkle": Table(
+        {
+            "curvature": Text(choices=("tensor", "paper"), default="tensor"),
+            "c_threshold_per_mm": Number(above=0, scale=1 / MM),
+        }
+    ),
+    "accept": Named(Table(dict.fromkeys(MEASURES, Number(low=0)))),
+}

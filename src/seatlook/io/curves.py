@@ -1,0 +1,51 @@
+"""Named curves in space: the wires in the trenches, the frame below."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from seatlook.files import write_text
+from seatlook.io._schema import MM, Array, Kind, Named, Table, read_table
+from seatlook.io._toml import quoted, read_document
+from seatlook.model import FloatArray
+
+_KEYS: dict[str, Kind] = {
+    "curve": Named(
+        Table({"points_mm": Array(shape=(None, 3), scale=MM, required=True)}), required=True
+    )
+}
+
+
+def read_curves(path: Path) -> dict[str, FloatArray]:
+    """Read ``[curve.NAME] points_mm = [[x, y, z], ...]``.
+
+    Returns
+    -------
+    name -> (k, 3) [m], k >= 2; a closed curve repeats its first point
+
+    Raises
+    ------
+    InputError
+        For a key that is unknown, missing or of the wrong type, and for a curve without length.
+    """
+    document = read_document(path)
+    row = read_table(document, _KEYS)
+    for name, curve in row["curve"].items():
+        points = curve["points_mm"]
+        if points is not None and not np.ptp(points, axis=0).any():
+            got = f"{len(points)} points at one place"
+            document.report(("curve", name, "points_mm"), got, "a curve")
+    document.finish()
+    return {name: curve["points_mm"] for name, curve in row["curve"].items()}
+
+
+def write_curves(curves: Mapping[str, FloatArray], path: Path) -> None:
+    """Write curves (k, 3) [m] in millimetres."""
+    blocks = []
+    for name, curve in curves.items():
+        points = "\n".join(f"  {p}," for p in (1e3 * curve).tolist())
+        blocks.append(f"[curve.{quoted(name)}]\npoints_mm = [\n{points}\n]")
+    write_text(path, "\n\n".join(blocks) + "\n")

@@ -1,0 +1,166 @@
+"""The design surface: OBJ with a group per panel."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.files import write_text
+from seatlook.io._schema import shown
+from seatlook.io._toml import read_file
+from seatlook.model import FloatArray, IntArray
+
+Unit = Literal["mm", "m"]
+
+METRES: dict[Unit, float] = {"mm": 1e-3, "m": 1.0}
+SMALLEST_M, LARGEST_M = 0.05, 3.0
+
+
+class GroupedMesh(NamedTuple):
+    """A surface whose faces carry the name of a panel.
+
+    Parameters
+    ----------
+    vertices : (n, 3) [m]; faces : (m, 3) int64
+    panel : (m,) int64, index into ``panel_names``
+    """
+
+    vertices: FloatArray
+    faces: IntArray
+    panel: IntArray
+    panel_names: tuple[str, ...]
+
+
+def read_surface(path: Path, *, unit: Unit) -> GroupedMesh:
+    """Read a design surface: an OBJ file in which ``g NAME`` names the panel of the next faces.
+
+    Polygons are cut into fans. The surface need not be closed.
+
+    Raises
+    ------
+    InputError
+        For a face without a group, outside the vertices or of fewer than three, for a number that
+        is none, and for a size not within 0.05 to 3 m; with the line, all together.
+    """
+    lines = read_file(path).decode(errors="replace").splitlines()
+    reader = _ObjReader(path)
+    for number, line in enumerate(lines, start=1):
+        reader.read(number, line.split("#", 1)[0].split())
+    mesh = reader.result(METRES[unit])
+    check_size(path, mesh.vertices, unit)
+    return mesh
+
+
+class _ObjReader:
+    """The lines of an OBJ file, one after the other."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.vertices: list[list[float]] = []
+        self.faces: list[list[int]] = []
+        self.panel: list[int] = []
+        self.names: list[str] = []
+        self.errors: list[InputError] = []
+        self.group: int | None = None
+
+    def read(self, number: int, words: list[str]) -> None:
+        if not words or words[0] not in ("v", "f", "g"):
+            return
+        kind, values = words[0], words[1:]
+        try:
+            if kind == "v":
+                self._vertex(values)
+            elif kind == "g":
+                self._open_group(" ".join(values))
+            else:
+                self._face(values)
+        except ValueError as error:
+            self.errors.append(
+                InputError.single(kind, got=shown(" ".join(values)), expected=str(error),
+                                  file=self.path, line=number)
+            )  # fmt: skip
+
+    def _vertex(self, values: list[str]) -> None:
+        # A line that is refused still counts, or every later index would be off by one.
+        self.vertices.append([0.0, 0.0, 0.0])
+        expected = "three finite numbers"
+        try:
+            point = [float(v) for v in values[:3]]
+        except ValueError as error:
+            raise ValueError(expected) from error
+        if len(point) != 3 or not np.isfinite(point).all():
+            raise ValueError(expected)
+        self.vertices[-1] = point
+
+    def _open_group(self, name: str) -> None:
+        if name not in self.names:
+            self.names.append(name)
+        self.group = self.names.index(name)
+
+    def _face(self, values: list[str]) -> None:
+        count = len(self.vertices)
+        if self.group is None:
+            raise ValueError("a group (g PANEL) before the first face")
+        try:
+            corners = [int(v.split("/")[0]) for v in values]
+        except ValueError as error:
+            raise ValueError("vertex numbers") from error
+        corners = [c - 1 if c > 0 else count + c for c in corners]
+        if len(corners) < 3 or not all(0 <= c < count for c in corners):
+            raise ValueError(f"three or more vertices from 1 to {count}")
+        for b, c in pairwise(corners[1:]):
+            self.faces.append([corners[0], b, c])
+            self.panel.append(self.group)
+
+    def result(self, scale: float) -> GroupedMesh:
+        if self.errors:
+            raise InputError(p for error in self.errors for p in error.problems)
+        if not self.faces:
+            raise InputError.single("f", got="no face", expected="faces", file=self.path)
+        used = sorted(set(self.panel))
+        return GroupedMesh(
+            vertices=scale * np.array(self.vertices),
+            faces=np.array(self.faces, dtype=np.int64),
+            panel=np.searchsorted(used, self.panel).astype(np.int64),
+            panel_names=tuple(self.names[i] for i in used),
+        )
+
+
+def write_surface(mesh: GroupedMesh, path: Path) -> None:
+    """Write a design surface as OBJ in millimetres, one group per panel, all digits kept."""
+    rows = [_vertex_rows(mesh.vertices)]
+    for index, name in enumerate(mesh.panel_names):
+        rows.append(f"g {name}")
+        rows.append(_face_rows(mesh.faces[mesh.panel == index]))
+    write_text(path, "\n".join(rows) + "\n")
+
+
+def write_obj(vertices: FloatArray, faces: IntArray, path: Path) -> None:
+    """Write a surface (n, 3) [m], (m, 3) as OBJ in millimetres, all digits kept."""
+    write_text(path, f"{_vertex_rows(vertices)}\n{_face_rows(faces)}\n")
+
+
+def _vertex_rows(vertices: FloatArray) -> str:
+    return "\n".join(f"v {x!r} {y!r} {z!r}" for x, y, z in (1e3 * vertices).tolist())
+
+
+def _face_rows(faces: IntArray) -> str:
+    return "\n".join(f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist())
+
+
+def check_size(path: Path, vertices: FloatArray, unit: Unit) -> None:
+    """Refuse a seat that cannot be one: most often the unit is wrong."""
+    size = float(np.ptp(vertices, axis=0).max())
+    if not SMALLEST_M <= size <= LARGEST_M:
+        other = "m" if unit == "mm" else "mm"
+        raise InputError.single(
+            "size",
+            got=f"{size:.4g} m",
+            expected=f"{SMALLEST_M:g} to {LARGEST_M:g} m",
+            file=path,
+            hint=f'unit = "{unit}" is taken; is it "{other}"?',
+        )

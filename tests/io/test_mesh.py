@@ -1,0 +1,176 @@
+import numpy as np
+import pytest
+import trimesh
+
+from seatlook.io.curves import read_curves, write_curves
+from seatlook.io.material import read_foam_material
+from seatlook.io.mesh import read_foam
+from seatlook.io.surface import GroupedMesh, read_surface, write_obj, write_surface
+
+FOAM = read_foam_material("foam-seat")
+
+
+def tube():
+    """A closed body with no symmetry, in metres."""
+    mesh = trimesh.creation.box(extents=(0.5, 0.4, 0.1))
+    mesh.vertices = mesh.vertices + np.array([0.01, 0.02, 0.03])
+    return mesh
+
+
+def volume(foam):
+    a, b, c = foam.vertices[foam.faces].transpose(1, 0, 2)
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".stl", ".ply"])
+@pytest.mark.parametrize(("unit", "scale"), [("mm", 1000.0), ("m", 1.0)])
+def test_formats_and_units(tmp_path, suffix, unit, scale):
+    mesh = tube()
+    mesh.apply_scale(scale)
+    path = tmp_path / f"foam{suffix}"
+    mesh.export(path)
+    foam = read_foam(path, material=FOAM, unit=unit)
+    assert foam.vertices.shape == (8, 3)
+    assert len(foam.faces) == 12
+    assert volume(foam) == pytest.approx(0.5 * 0.4 * 0.1, rel=1e-5)
+    assert foam.vertices.max(axis=0) == pytest.approx([0.26, 0.22, 0.08], abs=1e-6)
+
+
+def test_inward_faces_are_turned(tmp_path):
+    mesh = tube()
+    mesh.invert()
+    mesh.export(tmp_path / "foam.ply")
+    assert volume(read_foam(tmp_path / "foam.ply", material=FOAM, unit="m")) > 0
+
+
+def test_y_up_is_turned_to_z(tmp_path):
+    vertices = np.asarray(tube().vertices)
+    write_obj(vertices[:, [0, 2, 1]] * [1, 1, -1], tube().faces, tmp_path / "foam.obj")
+    foam = read_foam(tmp_path / "foam.obj", material=FOAM, unit="mm", up="y")
+    assert volume(foam) > 0
+    assert np.allclose(np.sort(foam.vertices, axis=0), np.sort(vertices, axis=0))
+
+
+def test_surface_not_closed(tmp_path, problems):
+    mesh = tube()
+    write_obj(mesh.vertices, mesh.faces[1:], tmp_path / "foam.obj")
+    (message,) = problems(read_foam, tmp_path / "foam.obj", material=FOAM, unit="mm")
+    assert message.startswith(
+        "foam.obj: surface: got 3 edges without exactly two faces, the first at ["
+    )
+    assert message.endswith("expected a closed surface")
+
+
+def test_one_face_turned(tmp_path, problems):
+    mesh = tube()
+    faces = np.array(mesh.faces)
+    faces[3] = faces[3, ::-1]
+    write_obj(mesh.vertices, faces, tmp_path / "foam.obj")
+    assert problems(read_foam, tmp_path / "foam.obj", material=FOAM, unit="mm") == [
+        "foam.obj: surface: got neighbouring faces that look to different sides, "
+        "expected all faces outward"
+    ]
+
+
+def test_two_bodies(tmp_path, problems):
+    a, b = tube(), tube()
+    b.apply_translation([0.6, 0, 0])
+    write_obj(*_joined(a, b), tmp_path / "foam.obj")
+    assert problems(read_foam, tmp_path / "foam.obj", material=FOAM, unit="mm") == [
+        "foam.obj: surface: got 2 bodies, expected one body"
+    ]
+
+
+def _joined(a, b):
+    return np.vstack([a.vertices, b.vertices]), np.vstack([a.faces, b.faces + len(a.vertices)])
+
+
+def test_nan_vertex(tmp_path, problems):
+    vertices = np.array(tube().vertices)
+    vertices[2, 1] = np.nan
+    write_obj(vertices, tube().faces, tmp_path / "foam.obj")
+    (message,) = problems(read_foam, tmp_path / "foam.obj", material=FOAM, unit="mm")
+    assert message.startswith("foam.obj: vertex 3: got [")
+    assert message.endswith("(1 such vertices), expected finite coordinates")
+
+
+@pytest.mark.parametrize(("unit", "other", "size"), [("m", "mm", "500 m"), ("mm", "m", "0.0005 m")])
+def test_size_that_cannot_be_a_seat(tmp_path, problems, unit, other, size):
+    mesh = tube()
+    mesh.apply_scale(1000.0 if unit == "m" else 1.0)
+    mesh.export(tmp_path / "foam.ply")
+    assert problems(read_foam, tmp_path / "foam.ply", material=FOAM, unit=unit) == [
+        f'foam.ply: size: got {size}, expected 0.05 to 3 m (unit = "{unit}" is taken; '
+        f'is it "{other}"?)'
+    ]
+
+
+@pytest.mark.parametrize("name", ["a.obj", "a.stl", "a.ply"])
+@pytest.mark.parametrize("content", ["", "hello\n", "ply\nformat ascii 1.0\nend_header\n"])
+def test_file_without_faces(write, problems, name, content):
+    (message,) = problems(read_foam, write(name, content), material=FOAM, unit="mm")
+    assert message.startswith(f"{name}: file: got ")
+    assert message.endswith("expected a surface of triangles (.obj, .stl, .ply)")
+
+
+def test_unknown_format(write, problems):
+    assert problems(read_foam, write("a.step", "x"), material=FOAM, unit="mm") == [
+        "a.step: file: got '.step', expected one of .obj, .stl, .ply"
+    ]
+
+
+def test_written_surface_reads_back(tmp_path):
+    mesh = tube()
+    panel = np.array([0, 0, 1, 1, 2, 2, 0, 1, 2, 0, 1, 2])
+    order = np.argsort(panel, kind="stable")
+    surface = GroupedMesh(
+        np.asarray(mesh.vertices), np.asarray(mesh.faces), panel, ("INSERT", "LH side", "REAR")
+    )
+    write_surface(surface, tmp_path / "s.obj")
+    again = read_surface(tmp_path / "s.obj", unit="mm")
+    assert again.panel_names == surface.panel_names
+    assert np.array_equal(again.faces, surface.faces[order])
+    assert np.array_equal(again.panel, panel[order])
+    assert np.abs(again.vertices - surface.vertices).max() < 1e-15
+
+
+def test_obj_dialects(write):
+    text = (
+        "# comment\nmtllib a.mtl\nv 0 0 0 1 1 1\nv 100 0 0\nv 100 100 0 # corner\nv 0 100 0\n"
+        "g empty\ng A\nf 1/1/1 2//2 3 4\ng B\nf -4 -2 -1\n"
+    )
+    surface = read_surface(write("s.obj", text), unit="mm")
+    assert surface.panel_names == ("A", "B")
+    assert surface.faces.tolist() == [[0, 1, 2], [0, 2, 3], [0, 2, 3]]
+    assert surface.panel.tolist() == [0, 0, 1]
+    assert surface.vertices[2].tolist() == [0.1, 0.1, 0.0]
+
+
+def test_bad_obj_names_every_line(write, problems):
+    text = "v 0 0 0\nv 1 nan 0\nv 1 x 0\nf 1 2 3\ng A\nf 1 2\nf 1 2 9\nf a b c\n"
+    assert problems(read_surface, write("s.obj", text), unit="mm") == [
+        "s.obj:2: v: got '1 nan 0', expected three finite numbers",
+        "s.obj:3: v: got '1 x 0', expected three finite numbers",
+        "s.obj:4: f: got '1 2 3', expected a group (g PANEL) before the first face",
+        "s.obj:6: f: got '1 2', expected three or more vertices from 1 to 3",
+        "s.obj:7: f: got '1 2 9', expected three or more vertices from 1 to 3",
+        "s.obj:8: f: got 'a b c', expected vertex numbers",
+    ]
+
+
+def test_curves_read_back(tmp_path):
+    random = np.random.default_rng(0)
+    curves = {"wire left": random.normal(size=(5, 3)), 'a "b".c': random.normal(size=(2, 3))}
+    write_curves(curves, tmp_path / "c.toml")
+    again = read_curves(tmp_path / "c.toml")
+    assert list(again) == list(curves)
+    for name, points in curves.items():
+        assert np.abs(again[name] - points).max() < 1e-15
+
+
+def test_bad_curves(write, problems):
+    text = "[curve.a]\npoints_mm = [[1, 2, 3]]\n[curve.b]\npoints_mm = [[1, 2], [3, 4]]\n"
+    assert problems(read_curves, write("c.toml", text)) == [
+        "c.toml:2: curve.a.points_mm: got 1 points at one place, expected a curve",
+        "c.toml:4: curve.b.points_mm: got [[1, 2], [3, 4]], expected an array of n x 3 numbers",
+    ]
