@@ -1,0 +1,6 @@
+"""The cover as an elastic sheet on foam: from placed panels to the sewn, hooked cover at rest."""
+
+from seatlook.solver.contact import foam_wavelength
+from seatlook.solver.solve import solve
+
+__all__ = ["foam_wavelength", "solve"]

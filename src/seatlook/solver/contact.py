@@ -1,0 +1,130 @@
+"""Foam under the cover: how stiff, how deep, how hard it presses."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.sparse import bsr_array, csc_array, diags_array
+
+from seatlook.model import Fabric, FloatArray, FoamMaterial
+from seatlook.solver.distance import DistanceField
+from seatlook.solver.kernels import contact as kernel
+
+
+def plane_strain_modulus(foam: FoamMaterial) -> float:
+    """E* = E / (1 - nu^2) of the foam [Pa]."""
+    return foam.young / (1.0 - foam.poisson**2)
+
+
+def foam_wavelength(fabric: Fabric, foam: FoamMaterial) -> float:
+    """Shortest wrinkle that the fabric makes on its foam, lambda = 2 pi (4 B / E*)^(1/3) [m].
+
+    Parameters
+    ----------
+    fabric : its softer direction of bending counts
+    foam : taken as an elastic half-space
+
+    Notes
+    -----
+    A film on a half-space (Allen 1969; Bowden et al. 1998), lambda = 2 pi t (Ef / (3 E*))^(1/3),
+    written with the bending stiffness B = Ef t^3 / 12. Elements of lambda / 8 resolve the shape,
+    lambda / 12 the curvature.
+    """
+    bending = min(fabric.bending_warp, fabric.bending_weft)
+    return 2.0 * math.pi * math.cbrt(4.0 * bending / plane_strain_modulus(foam))
+
+
+def wave_stiffness(fabric: Fabric, foam: FoamMaterial) -> float:
+    """Half-space stiffness pi E* / lambda against a wave of ``foam_wavelength`` [N/m3]."""
+    return math.pi * plane_strain_modulus(foam) / foam_wavelength(fabric, foam)
+
+
+class FoamContact:
+    """Energy of the foam pressed in by the sheet's lower face.
+
+    Parameters
+    ----------
+    field : distance from the foam
+    half_thickness : (n,) float64 [m]   of the sheet at each vertex
+    stiffness : (n,) float64 [N/m3]     of the foam below it
+    area : (n,) float64 [m2]            at rest, that the vertex stands for
+    """
+
+    def __init__(
+        self,
+        field: DistanceField,
+        half_thickness: FloatArray,
+        stiffness: FloatArray,
+        area: FloatArray,
+    ) -> None:
+        self.field, self.area = field, area
+        self.offset = half_thickness.copy()
+        self.per_vertex = stiffness * area
+        n = len(area)
+        self.force, self.depth, self.normal = np.zeros(n), np.zeros(n), np.zeros((n, 3))
+        self._blocks = np.zeros((n, 3, 3))
+
+    def value(self, x: FloatArray, gradient: FloatArray) -> float:
+        """Return the energy [J] and add its gradient [N]."""
+        return float(
+            kernel.contact_value(
+                x, self.field.coefficients, self.field.grid, self.offset, self.per_vertex, gradient
+            )
+        )
+
+    def update(self, x: FloatArray) -> None:
+        """Refresh normal force, normal and depth at ``x``."""
+        kernel.contact_state(
+            x,
+            self.field.coefficients,
+            self.field.grid,
+            self.offset,
+            self.per_vertex,
+            self.force,
+            self.normal,
+            self.depth,
+        )
+
+    def pressure(self) -> FloatArray:
+        """Pressure at the last update, (n,) [Pa]."""
+        return np.asarray(self.force / self.area)
+
+    def compression(self, x: FloatArray) -> float:
+        """Largest depth over the local thickness of the foam, at the last update [1]."""
+        touching = np.flatnonzero(self.force > 0)
+        if not touching.size:
+            return 0.0
+        through = np.empty(len(touching))
+        kernel.thickness(
+            self.field.coefficients,
+            self.field.grid,
+            x[touching],
+            self.normal[touching],
+            through,
+        )
+        return float((self.depth[touching] / (through + self.depth[touching])).max())
+
+    def stiffness(self) -> csc_array:
+        """Foam stiffness of the vertices that touched at the last update."""
+        return diags_array(np.where(self.force > 0, self.per_vertex, 0.0)).tocsc()
+
+    def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
+        """Second derivative [N/m]; ``definite`` leaves the curvature of the surface out."""
+        kernel.contact_blocks(
+            x,
+            self.field.coefficients,
+            self.field.grid,
+            self.offset,
+            self.per_vertex,
+            definite,
+            self._blocks,
+        )
+        return diagonal_blocks(self._blocks)
+
+
+def diagonal_blocks(blocks: FloatArray) -> csc_array:
+    """Sparse (3n, 3n) matrix of (n, 3, 3) diagonal blocks."""
+    n = len(blocks)
+    bsr = bsr_array((blocks.copy(), np.arange(n), np.arange(n + 1)), shape=(3 * n, 3 * n))
+    return csc_array(bsr)

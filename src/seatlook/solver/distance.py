@@ -1,0 +1,102 @@
+"""Signed distance of the closed foam surface as a smooth (C2) field."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from seatlook.errors import InputError
+from seatlook.model import FloatArray, IntArray
+from seatlook.solver.kernels import distance as kernel
+
+_BAND = 2.0  # cells around the surface whose distance is searched over all faces
+_MAX_NODES = 6_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class DistanceField:
+    """Cubic B-spline of a signed distance, negative inside.
+
+    Parameters
+    ----------
+    coefficients : (nx, ny, nz) float64 [m]
+    grid : (4,) float64 [m]     first node and spacing
+    """
+
+    coefficients: FloatArray
+    grid: FloatArray
+
+    def at(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return distance (k,) [m] and gradient (k, 3); outside the grid inf and 0."""
+        phi, gradient = np.empty(len(points)), np.empty((len(points), 3))
+        kernel.evaluate(
+            self.coefficients, self.grid, np.array(points, dtype=float, order="C"), phi, gradient
+        )
+        return phi, gradient
+
+
+def distance_field(
+    vertices: FloatArray, faces: IntArray, *, spacing: float = 0.004, margin: float = 0.02
+) -> DistanceField:
+    """Signed distance of a closed surface with outward normals.
+
+    Exact point-triangle distances near the surface, the nearest face carried on beyond, sign from
+    the winding number along vertical lines, then cubic B-spline interpolation, which is C2.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64 [m]; faces : (m, 3) int64
+    spacing : float [m]     of the grid
+    margin : float [m]      of the grid around the surface
+
+    Raises
+    ------
+    InputError
+        The surface is not closed, turned inside out, or too large for the spacing (wrong unit?).
+    """
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    pad = margin + 4 * spacing
+    size = np.ceil((high - low + 2 * pad) / spacing).astype(np.int64) + 1
+    if np.prod(size.astype(float)) > _MAX_NODES:
+        raise InputError.single(
+            "foam",
+            got=f"size {np.array2string(high - low, precision=4)} m",
+            expected=f"at most {_MAX_NODES} grid nodes at {spacing * 1e3:g} mm",
+            hint="is it in the right unit?",
+        )
+    # The odd fractions keep grid lines off the edges of meshes drawn on round numbers.
+    start = low - pad + spacing * np.array([0.137, 0.219, 0.071])
+    grid = np.array([*start, spacing])
+    vertices, faces = np.array(vertices, order="C"), np.array(faces, order="C")
+    shape = tuple(int(s) for s in size)
+    distance2, nearest = np.full(shape, np.inf), np.full(shape, -1, dtype=np.int64)
+    kernel.fill_band(vertices, faces, grid, _BAND, distance2, nearest)
+    # Further out a closer face may not have reached the node: search there by neighbours.
+    far = distance2 > (_BAND * spacing) ** 2
+    distance2[far] = np.inf
+    band = np.where(far, -1, nearest)
+    index = ndimage.distance_transform_edt(far, return_distances=False, return_indices=True)
+    nearest = np.ascontiguousarray(nearest[tuple(index)])
+    kernel.improve(vertices, faces, grid, distance2, nearest, band)
+    phi = np.sqrt(distance2) * np.where(_inside(vertices, faces, grid, shape), -1.0, 1.0)
+    return DistanceField(ndimage.spline_filter(phi, order=3, mode="mirror"), grid)
+
+
+def _inside(
+    vertices: FloatArray, faces: IntArray, grid: FloatArray, shape: tuple[int, ...]
+) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    """Nodes around which the surface winds once or more."""
+    winding = np.zeros(shape, dtype=np.int64)
+    kernel.count_crossings(vertices, faces, grid, winding)
+    np.cumsum(winding, axis=2, out=winding)
+    if winding[:, :, -1].any():
+        raise InputError.single(
+            "foam",
+            got=f"a surface that leaves {np.count_nonzero(winding[:, :, -1])} vertical lines open",
+            expected="a closed surface with consistent normals",
+        )
+    if winding.min() < 0:
+        raise InputError.single("foam", got="normals pointing inward", expected="outward normals")
+    return np.asarray(winding > 0)

@@ -1,0 +1,195 @@
+"""The cover while it is made: its state, the potential it moves in, its time steps."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from seatlook.errors import InputError, SolverError
+from seatlook.model import Cover, FloatArray, Foam, Solution
+from seatlook.solver.contact import FoamContact, wave_stiffness
+from seatlook.solver.distance import distance_field
+from seatlook.solver.elastic import ElasticSheet
+from seatlook.solver.energy import Energy
+from seatlook.solver.friction import Friction
+from seatlook.solver.inertia import Gravity, Inertia
+from seatlook.solver.kernels.lbfgs import largest_row
+from seatlook.solver.lbfgs import Factor, Lbfgs, Potential
+from seatlook.solver.stages import Step
+from seatlook.solver.ties import Ties
+
+_KEPT_VELOCITY = 0.5  # share of the velocity that a step hands to the next
+_STEP_TOLERANCE = 0.02  # out-of-balance force over mean elastic force that ends a time step
+_REST_TOLERANCE = 3e-4  # the same for a static solve, safely below RESIDUAL
+# Above this ratio B / (E h^2) bending sets the pace of the minimiser and joins the matrix.
+_STIFF_BENDING = 0.02
+
+RESIDUAL = 1e-3  # "converged": largest out-of-balance force over mean elastic nodal force
+
+
+class Record(NamedTuple):
+    """One row of the history; energies [J], gap [m], speed as ratio of energies [1]."""
+
+    time: float
+    energy: float
+    elastic: float
+    kinetic: float
+    residual: float
+    seam_gap: float
+    iterations: int
+
+
+class Process:
+    """State and energies of a cover in the making.
+
+    Parameters
+    ----------
+    cover : what is made
+    dt : float [s]
+    iterations : most L-BFGS iterations in one time step
+    """
+
+    def __init__(self, cover: Cover, *, dt: float, iterations: int) -> None:
+        self.cover, self.dt, self.iterations = cover, dt, iterations
+        fabrics = [material.fabric for material in cover.materials]
+        self.sheet = ElasticSheet(cover.rest, cover.faces, cover.panel, fabrics)
+        self.panel = np.zeros(len(cover.rest), dtype=np.int64)
+        self.panel[cover.faces] = cover.panel[:, None]
+        tension = np.array([np.sqrt(f.warp.stiffness[0] * f.weft.stiffness[0]) for f in fabrics])
+        softness = max(
+            max(f.bending_warp, f.bending_weft) / (k * cover.element_size**2)
+            for f, k in zip(fabrics, tension, strict=True)
+        )
+        self._bending_in_factor = softness > _STIFF_BENDING
+        self._mass: FloatArray = np.array(self.sheet.mass, dtype=np.float64)
+        self.gravity = Gravity(self._mass)
+        self.inertia = Inertia(self._mass, dt)
+        self.ties = Ties(cover, tension[self.panel] / cover.element_size)
+        outer: list[Energy] = [self.gravity, self.ties]
+        self.contact: FoamContact | None = None
+        self.friction: Friction | None = None
+        if cover.foam is not None:
+            self.contact = self._foam_contact(cover.foam)
+            self.friction = Friction(self.contact, cover.foam.material.friction)
+            outer += [self.contact, self.friction]
+        self._outer = Potential(outer)
+        self._elastic = Potential(self.sheet.energies)
+        self._static = Potential([*self.sheet.energies, *outer])
+        self._moving = Potential([*self.sheet.energies, *outer, self.inertia])
+        self.x = np.array(cover.positions, order="C")
+        self.v = np.zeros_like(self.x)
+        self.time = 0.0
+        self._lbfgs = Lbfgs(self.x.shape)
+        self._factor: Factor | None = None
+        self._work, self._start = np.zeros_like(self.x), np.zeros_like(self.x)
+
+    def _foam_contact(self, foam: Foam) -> FoamContact:
+        """Contact with the stiffness of each vertex's fabric on the foam, times its rest area."""
+        cover = self.cover
+        fabrics = [material.fabric for material in cover.materials]
+        half = np.array([0.5 * f.thickness for f in fabrics])
+        waves = np.array([wave_stiffness(f, foam.material) for f in fabrics])
+        area = np.zeros(len(cover.rest))
+        np.add.at(area, cover.faces, cover.rest_area[:, None] / 3.0)
+        field = distance_field(foam.vertices, foam.faces)
+        return FoamContact(field, half[self.panel], waves[self.panel], area)
+
+    def resume(self, start: Solution) -> None:
+        """Take over the state of an earlier solution of the same mesh."""
+        if not np.array_equal(start.cover.faces, self.cover.faces):
+            raise InputError.single(
+                "start", got="a solution on another mesh", expected="one of this cover's mesh"
+            )
+        np.copyto(self.x, start.positions)
+        np.copyto(self.v, start.velocities)
+        for tie in self.ties.ties:
+            if tie.name in start.multipliers:
+                self.ties.multiplier[tie.rows] = start.multipliers[tie.name]
+        if self.friction is not None:
+            np.copyto(self.friction.anchor, start.friction_anchor)
+
+    def step(self, step: Step, *, refactor: bool) -> Record:
+        """Advance by one backward-Euler step; ``refactor`` renews the matrix."""
+        self.time = step.time
+        self.ties.pull(self.x, step.before, step.progress)
+        self._lag()
+        np.multiply(self.v, _KEPT_VELOCITY * self.dt, out=self.inertia.free)
+        self.inertia.free += self.x
+        if refactor or self._factor is None:
+            self._factor = Factor(self._matrix())
+        limit = _STEP_TOLERANCE * self._elastic_force()
+        return self._descend(self._factor, limit, self.iterations)
+
+    def settle(self, dt: float, record: Record, iterations: int) -> Record:
+        """Minimise from rest with an inertia of step ``dt``, hardly felt when that is long."""
+        self.inertia.set_step(dt)
+        self._lag()
+        np.copyto(self.inertia.free, self.x)
+        limit = max(_REST_TOLERANCE, 0.02 * record.residual) * self._elastic_force()
+        return self._descend(Factor(self._matrix()), limit, iterations)
+
+    def record(self, iterations: int = 0) -> Record:
+        """Measure the state with nothing lagging: the balance is that of forces at ``x``."""
+        self._lag()
+        scale = self._elastic_force()
+        elastic = self._elastic.value(self.x, self._work)
+        energy = self._static.value(self.x, self._work)
+        if not np.isfinite(energy):
+            raise SolverError(f"energy is {energy} at {self.time:.3g} s: the cover has blown up")
+        speed2 = np.einsum("ij,ij->i", self.v, self.v)
+        return Record(
+            time=self.time,
+            energy=energy,
+            elastic=elastic,
+            kinetic=0.5 * float(self._mass @ speed2),
+            residual=largest_row(self._work) / scale if scale > 0 else np.inf,
+            seam_gap=self.ties.largest_gap(self.x, "seam"),
+            iterations=iterations,
+        )
+
+    def resultants(self) -> dict[str, FloatArray]:
+        """Sum of the forces on the cover by cause, each (3,) [N]."""
+        forces = {}
+        parts: dict[str, Energy] = {"weight": self.gravity, "ties": self.ties}
+        if self.contact is not None and self.friction is not None:
+            parts |= {"contact": self.contact, "friction": self.friction}
+        for name, energy in parts.items():
+            self._work.fill(0.0)
+            energy.value(self.x, self._work)
+            forces[name] = -self._work.sum(axis=0)
+        return forces
+
+    def _descend(self, factor: Factor, limit: float, iterations: int) -> Record:
+        """Minimise the moving potential until no vertex is out of balance by ``limit`` [N]."""
+        np.copyto(self._start, self.x)
+        descent = self._lbfgs.minimise(
+            self._moving,
+            self.x,
+            factor,
+            done=lambda gradient: largest_row(gradient) <= limit,
+            iterations=iterations,
+        )
+        np.subtract(self.x, self._start, out=self.v)
+        # In settling, too, movement counts by the time step of the process.
+        self.v /= self.dt
+        record = self.record(descent.iterations)
+        self.ties.update(self.x)
+        return record
+
+    def _lag(self) -> None:
+        """Refresh what a minimisation holds fixed: normal forces, normals, friction anchors."""
+        if self.contact is not None and self.friction is not None:
+            self.contact.update(self.x)
+            self.friction.update(self.x)
+
+    def _elastic_force(self) -> float:
+        """Mean over the vertices of the elastic force [N]."""
+        self._elastic.value(self.x, self._work)
+        return float(np.sqrt(np.einsum("ij,ij->i", self._work, self._work)).mean())
+
+    def _matrix(self) -> csc_array:
+        """Scalar stiffness (n, n) [N/m] of everything for the factor."""
+        sheet = self.sheet.stiffness(self._bending_in_factor)
+        return csc_array(sheet + self._outer.stiffness() + self.inertia.stiffness())

@@ -1,0 +1,178 @@
+"""Sew, hook, cover, settle: from the placed panels to the cover at rest on its foam."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from types import MappingProxyType
+from typing import Protocol
+
+import numpy as np
+
+from seatlook import __version__
+from seatlook.errors import ConvergenceError, InputError
+from seatlook.model import Cover, Solution
+from seatlook.solver.process import Process, Record
+from seatlook.solver.stages import Step, check_stages, schedule
+from seatlook.solver.verdict import figures, reasons
+
+_SETTLE = "settle"
+_ROUNDS = 40  # of settling, each with the inertia of a time step twice as long
+_REST_ITERATIONS = 300  # of one round
+_MOST_ITERATIONS = 6000  # of all rounds
+_REFACTOR = 2  # time steps that share a factor
+
+
+class Progress(Protocol):
+    """What ``solve`` calls after every step; lengths in m, energy in J."""
+
+    def __call__(
+        self, *, stage: str, step: int, steps: int, energy: float, residual: float, gap: float
+    ) -> None:
+        """Show the state."""
+        ...
+
+
+def solve(
+    cover: Cover,
+    *,
+    strict: bool = False,
+    progress: Progress | None = None,
+    start: Solution | None = None,
+    snapshot: Callable[[Solution], None] | None = None,
+    dt: float = 0.02,
+    iterations: int = 30,
+) -> Solution:
+    """Carry out the stages of a cover and let it come to rest.
+
+    Damped backward Euler; every step minimises one potential (inertia, sheet, weight, foam,
+    lagged friction, ties) by L-BFGS with a prefactored matrix, then the static balance is sought
+    with friction and tie forces updated until they agree with the shape.
+
+    Parameters
+    ----------
+    strict : raise when the result is not converged
+    progress : called after every step
+    start : earlier solution of the same mesh; the process goes on after its stage
+    snapshot : called with the state at the end of every stage
+    dt : float [s]      time step
+    iterations : int    most L-BFGS iterations in a time step
+
+    Returns
+    -------
+    Solution
+        ``status`` is "converged" when the largest out-of-balance force is below 1e-3 of the mean
+        elastic nodal force, seams are closed to 0.1 mm, kinetic energy is below 1e-4 of the
+        elastic, and the foam stays within what its curve says; else ``reason`` says what is not.
+
+    Raises
+    ------
+    InputError              a tie names a stage that is not planned, the foam is not closed
+    InvertedElementError    a triangle without area, before or after
+    SolverError             the energy is not a number
+    ConvergenceError        only with ``strict``; carries the last Solution
+    """
+    check_stages(cover)
+    clock = time.process_time()
+    process = Process(cover, dt=dt, iterations=iterations)
+    plan = schedule(cover.stages, dt)
+    ahead = plan if start is None else _after(plan, start, cover)
+    if start is not None:
+        process.resume(start)
+    run = _Run(process, plan, clock, progress)
+    for i, step in enumerate(ahead):
+        first = i == 0 or ahead[i - 1].stage != step.stage
+        index = plan.index(step)
+        run.add(step.stage, process.step(step, refactor=first or index % _REFACTOR == 0))
+        last = i + 1 == len(ahead) or ahead[i + 1].stage != step.stage
+        if last and snapshot is not None:
+            snapshot(run.solution(step.stage, ["settling has not been done"]))
+    run.settle()
+    solution = run.solution(_SETTLE, reasons(process, run.records[-1]))
+    if strict and solution.status != "converged":
+        raise ConvergenceError(solution.reason, solution)
+    return solution
+
+
+class _Run:
+    """History and clock of one call of ``solve``."""
+
+    def __init__(
+        self, process: Process, plan: list[Step], clock: float, progress: Progress | None
+    ) -> None:
+        self.process, self.progress, self.clock = process, progress, clock
+        self.steps, self.plan = len(plan) + 1, plan
+        self.records: list[Record] = []
+        self.seconds: list[float] = []
+
+    def add(self, stage: str, record: Record) -> None:
+        """Keep and show a step."""
+        self.records.append(record)
+        self.seconds.append(time.process_time() - self.clock)
+        if self.progress is not None:
+            self.progress(
+                stage=stage,
+                step=min(len(self.records), self.steps),
+                steps=self.steps,
+                energy=record.energy,
+                residual=record.residual,
+                gap=record.seam_gap,
+            )
+
+    def settle(self) -> None:
+        """Repeat the static solve until all that lags agrees with the shape."""
+        process = self.process
+        process.ties.close()
+        record, spent, dt = process.record(), 0, process.dt
+        for _ in range(_ROUNDS):
+            left = min(_REST_ITERATIONS, _MOST_ITERATIONS - spent)
+            record = process.settle(dt, record, left)
+            self.add(_SETTLE, record)
+            spent += record.iterations
+            dt *= 2.0
+            if not reasons(process, record) or spent >= _MOST_ITERATIONS:
+                return
+
+    def solution(self, stage: str, why: list[str]) -> Solution:
+        """The state as a Solution."""
+        process = self.process
+        top, mid, bottom = process.sheet.strains(process.x)
+        ties = process.ties
+        columns = {
+            name: np.array([getattr(record, name) for record in self.records], dtype=float)
+            for name in Record._fields
+        }
+        free = np.full_like(process.x, np.nan)
+        seconds = time.process_time() - self.clock
+        return Solution(
+            cover=process.cover,
+            positions=process.x,
+            velocities=process.v,
+            strain_top=top,
+            strain_mid=mid,
+            strain_bottom=bottom,
+            multipliers=MappingProxyType(
+                {t.name: ties.multiplier[t.rows].copy() for t in ties.ties}
+            ),
+            friction_anchor=free if process.friction is None else process.friction.anchor,
+            stage=stage,
+            status="not converged" if why else "converged",
+            reason="; ".join(why),
+            history=MappingProxyType(columns | {"cpu_seconds": np.array(self.seconds)}),
+            figures=MappingProxyType(figures(process, self.records) | {"cpu_seconds": seconds}),
+            version=__version__,
+        )
+
+
+def _after(plan: list[Step], start: Solution, cover: Cover) -> list[Step]:
+    """Steps after the stage at whose end ``start`` was taken."""
+    if start.stage == _SETTLE:
+        return []
+    done = [i for i, step in enumerate(plan) if step.stage == start.stage]
+    if not done:
+        raise InputError.single(
+            "start.stage",
+            got=repr(start.stage),
+            expected=f"one of {[s.name for s in cover.stages]}",
+        )
+    return plan[done[-1] + 1 :]

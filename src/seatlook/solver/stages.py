@@ -1,0 +1,76 @@
+"""The process in time: which stage is when, and how far its ties are drawn in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from seatlook.errors import InputError, did_you_mean
+from seatlook.model import Anchor, Cover, Stage, Stitching
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One time step.
+
+    Parameters
+    ----------
+    stage : the stage that began last
+    first : whether it is the first step under that name
+    time : [s] at the end of the step
+    progress, before : stage -> share of it that has passed at the end and at the start of the
+        step; above 1 the stage is over
+    """
+
+    stage: str
+    first: bool
+    time: float
+    progress: Mapping[str, float]
+    before: Mapping[str, float]
+
+
+def schedule(stages: Sequence[Stage], dt: float) -> list[Step]:
+    """Equal steps of about ``dt`` [s] up to the end of the last stage.
+
+    Examples
+    --------
+    >>> steps = schedule([Stage(name="sew", start=0.0, end=0.1)], 0.05)
+    >>> [step.progress["sew"] for step in steps]
+    [0.5, 1.0]
+    """
+    if not stages:
+        return []
+    end = max(stage.end for stage in stages)
+    count = max(1, round(end / dt))
+    times = [end * k / count for k in range(count + 1)]
+    order = sorted(stages, key=lambda stage: stage.start)
+    steps: list[Step] = []
+    for before, time in pairwise(times):
+        middle = 0.5 * (before + time)
+        begun = [stage.name for stage in order if stage.start <= middle] or [order[0].name]
+        first = not steps or steps[-1].stage != begun[-1]
+        after, ahead = _progress(stages, time), _progress(stages, before)
+        steps.append(Step(begun[-1], first, time, after, ahead))
+    return steps
+
+
+def check_stages(cover: Cover) -> None:
+    """Refuse ties whose stage is not in the plan."""
+    known = [stage.name for stage in cover.stages]
+    ties: list[Stitching | Anchor] = [*cover.stitchings, *cover.anchors]
+    for tie in ties:
+        if tie.stage not in known:
+            raise InputError.single(
+                f"{tie.name}.stage",
+                got=repr(tie.stage),
+                expected=f"one of {known}",
+                hint=did_you_mean(tie.stage, known),
+            )
+
+
+def _progress(stages: Sequence[Stage], time: float) -> dict[str, float]:
+    """Time since each stage began over its length."""
+    return {
+        stage.name: max((time - stage.start) / (stage.end - stage.start), 0.0) for stage in stages
+    }

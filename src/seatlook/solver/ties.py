@@ -1,0 +1,158 @@
+"""Seams, hooks and frames: what pulls points of the cover together or to their targets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array, diags_array, identity, kron
+
+from seatlook.model import Anchor, Cover, FloatArray, IntArray, Stitching
+from seatlook.solver.kernels import ties as kernel
+
+Kind = Literal["seam", "hook", "frame"]
+_STIFFER = 100.0  # than a strip of fabric one element long: a softer tie lets a buckled edge flip
+# A tie closes by pulling ever harder; only when closed does it reach its full stiffness.
+_PROGRESS, _SHARE = (0.0, 1.0, 1.4), (1e-5, 1e-2, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Tie:
+    """One seam, hook line or frame edge: a stretch of the rows of ``Ties``."""
+
+    name: str
+    kind: Kind
+    stage: str
+    rows: slice
+
+
+class Ties:
+    """Zero-length springs with an augmented Lagrangian.
+
+    Parameters
+    ----------
+    cover : its stitchings and anchors
+    stiffness : (n,) float64 [N/m2]   EA / h of the fabric at each vertex
+    """
+
+    def __init__(self, cover: Cover, stiffness: FloatArray) -> None:
+        self.ties: list[Tie] = []
+        vertices, weights, target, length = [], [], [], []
+        count = 0
+        parts: list[Stitching | Anchor] = [*cover.stitchings, *cover.anchors]
+        for part in parts:
+            rows = slice(count, count + len(part.length))
+            v, w, t = _rows(part)
+            kind: Kind = "seam" if isinstance(part, Stitching) else part.kind
+            self.ties.append(Tie(part.name, kind, part.stage, rows))
+            vertices.append(v)
+            weights.append(w)
+            target.append(t)
+            length.append(part.length)
+            count = rows.stop
+        self.vertices: IntArray = np.concatenate([np.zeros((0, 4), np.int64), *vertices])
+        self.weights: FloatArray = np.concatenate([np.zeros((0, 4)), *weights])
+        self.goal: FloatArray = np.concatenate([np.zeros((0, 3)), *target])
+        softest = np.where(self.weights != 0, stiffness[self.vertices], np.inf).min(axis=1)
+        self.full: FloatArray = np.concatenate([np.zeros(0), *length]) * softest * _STIFFER
+        self.stiff = np.zeros(count)
+        self.target = self.goal.copy()
+        self.multiplier = np.zeros((count, 3))
+        self._gap = np.zeros((count, 3))
+        self._points = csr_array(
+            (self.weights.ravel(), self.vertices.ravel(), 4 * np.arange(count + 1)),
+            shape=(count, len(stiffness)),
+        )
+
+    def value(self, x: FloatArray, gradient: FloatArray) -> float:
+        """Return the energy [J] and add its gradient [N]."""
+        return float(
+            kernel.tie_value(
+                x, self.vertices, self.weights, self.target, self.stiff, self.multiplier, gradient
+            )
+        )
+
+    def gap(self, x: FloatArray) -> FloatArray:
+        """Distance left between the points of every row, (s, 3) [m]."""
+        kernel.tie_gap(x, self.vertices, self.weights, self.goal, self._gap)
+        return self._gap
+
+    def pull(self, x: FloatArray, before: Mapping[str, float], after: Mapping[str, float]) -> None:
+        """Set targets for a step in which the progress of each stage goes from 0 (slack) to 1.
+
+        The gap there is shrinks by the share of the way that the step covers, and the springs
+        stiffen from weak to full: points travel evenly and around what lies in the way.
+        """
+        gap = self.gap(x)
+        for tie in self.ties:
+            s0, s1 = before[tie.stage], after[tie.stage]
+            share = max(1.0 - s1, 0.0) / (1.0 - s0) if s0 < 1.0 else 0.0
+            self.stiff[tie.rows] = self.full[tie.rows] * _ramp(s1)
+            self.target[tie.rows] = self.goal[tie.rows] + share * gap[tie.rows]
+
+    def close(self) -> None:
+        """Give all ties their full stiffness and final targets."""
+        np.copyto(self.stiff, self.full)
+        np.copyto(self.target, self.goal)
+
+    def largest_gap(self, x: FloatArray, kind: Kind) -> float:
+        """Largest gap of all ties of a kind [m], 0 if there is none."""
+        size = np.linalg.norm(self.gap(x), axis=1)
+        return max((float(size[t.rows].max()) for t in self.ties if t.kind == kind), default=0.0)
+
+    def figures(self, x: FloatArray) -> dict[str, float]:
+        """Gaps [m] of each kind, and for every tie its gaps and its pull in all [N]."""
+        result: dict[str, float] = {}
+        force = np.linalg.norm(self.force(x), axis=1)
+        size = np.linalg.norm(self.gap(x), axis=1)
+        for kind in ("seam", "hook", "frame"):
+            rows = [size[t.rows] for t in self.ties if t.kind == kind]
+            gaps = np.concatenate([np.zeros(0), *rows])
+            result[f"{kind}_gap_max"] = float(gaps.max(initial=0.0))
+            result[f"{kind}_gap_mean"] = float(gaps.mean()) if gaps.size else 0.0
+        for tie in self.ties:
+            result[f"{tie.kind}/{tie.name}/gap_max"] = float(size[tie.rows].max(initial=0.0))
+            result[f"{tie.kind}/{tie.name}/gap_mean"] = float(size[tie.rows].mean())
+            result[f"{tie.kind}/{tie.name}/force_max"] = float(force[tie.rows].max(initial=0.0))
+            result[f"{tie.kind}/{tie.name}/force_sum"] = float(force[tie.rows].sum())
+        return result
+
+    def update(self, x: FloatArray) -> None:
+        """One step of the augmented Lagrangian: the multipliers of closed ties take the force."""
+        closed = (self.stiff > 0.0) & (self.target == self.goal).all(axis=1)
+        self.multiplier += np.where(closed, self.stiff, 0.0)[:, None] * self.gap(x)
+
+    def force(self, x: FloatArray) -> FloatArray:
+        """Pull of every row on its first side, (s, 3) [N]: minus spring and multiplier."""
+        kernel.tie_gap(x, self.vertices, self.weights, self.target, self._gap)
+        return np.asarray(-(self.multiplier + self.stiff[:, None] * self._gap))
+
+    def stiffness(self) -> csc_array:
+        """Scalar stiffness of all springs that pull."""
+        p = self._points
+        return csc_array(p.T @ (diags_array(self.stiff) @ p))
+
+    def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
+        """Second derivative [N/m], constant and never indefinite."""
+        del x, definite
+        return csc_array(kron(self.stiffness(), identity(3), format="csc"))
+
+
+def _ramp(progress: float) -> float:
+    """Share of the full stiffness: none, then growing evenly on a logarithmic scale."""
+    if progress <= 0.0:
+        return 0.0
+    return float(np.exp(np.interp(progress, _PROGRESS, np.log(_SHARE))))
+
+
+def _rows(part: Stitching | Anchor) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Four vertices, their weights and a target for every row."""
+    if isinstance(part, Stitching):
+        v = np.concatenate([part.a.vertices, part.b.vertices], axis=1)
+        w = np.concatenate([part.a.weights, -part.b.weights], axis=1)
+        return v, w, np.zeros((len(v), 3))
+    v = np.concatenate([part.points.vertices, part.points.vertices], axis=1)
+    w = np.concatenate([part.points.weights, np.zeros_like(part.points.weights)], axis=1)
+    return v, w, part.target

@@ -1,0 +1,115 @@
+"""Whether a result may be believed, and the figures that say so."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatlook.errors import InvertedElementError
+from seatlook.solver.contact import FoamContact, foam_wavelength
+from seatlook.solver.process import RESIDUAL, Process, Record
+
+SEAM_GAP = 1e-4  # m
+ANCHOR_GAP = 5e-4  # m, hooked and framed points from their targets
+KINETIC = 1e-4  # of the elastic energy
+COMPRESSION = 0.6  # of the local foam thickness
+RESULTANT = 0.01
+_COLLAPSED = 1e-3  # of the rest area
+
+
+def reasons(process: Process, record: Record) -> list[str]:
+    """What keeps a state from being converged; empty when nothing does.
+
+    Raises
+    ------
+    InvertedElementError   a triangle has lost its area
+    """
+    _check_faces(process)
+    found = []
+    if not record.residual <= RESIDUAL:
+        found.append(f"out-of-balance force {record.residual:.2g} of the mean elastic force")
+    if record.kinetic > KINETIC * record.elastic:
+        found.append("the cover still moves")
+    if record.seam_gap >= SEAM_GAP:
+        found.append(f"a seam is open by {1e3 * record.seam_gap:.2g} mm")
+    for kind in ("hook", "frame"):
+        gap = process.ties.largest_gap(process.x, kind)
+        if gap >= ANCHOR_GAP:
+            found.append(f"a {kind} is off by {1e3 * gap:.2g} mm")
+    if process.contact is not None:
+        found += _contact_reasons(process, process.contact)
+    return found
+
+
+def figures(process: Process, records: Sequence[Record]) -> dict[str, float]:
+    """Final values that go with a Solution; SI units."""
+    record = records[-1]
+    result = {
+        "residual": record.residual,
+        "kinetic_ratio": record.kinetic / record.elastic if record.elastic > 0 else np.inf,
+        "elastic_energy": record.elastic,
+        "potential_energy": record.energy,
+        "iterations": float(sum(r.iterations for r in records)),
+        "steps": float(len(records)),
+        **process.ties.figures(process.x),
+    }
+    for name, force in process.resultants().items():
+        result |= {f"{name}_{axis}": float(f) for axis, f in zip("xyz", force, strict=True)}
+    if process.contact is not None and process.cover.foam is not None:
+        result |= _contact_figures(process, process.contact)
+        foam = process.cover.foam.material
+        waves = [foam_wavelength(m.fabric, foam) for m in process.cover.materials]
+        result["wavelength"] = min(waves)
+        result["wavelength_over_h"] = min(waves) / process.cover.element_size
+    return result
+
+
+def _check_faces(process: Process) -> None:
+    p = process.x[process.cover.faces]
+    area = 0.5 * np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1)
+    lost = np.flatnonzero(area < _COLLAPSED * process.cover.rest_area)
+    if lost.size:
+        name = process.cover.panel_names[process.cover.panel[lost[0]]]
+        raise InvertedElementError(
+            f"{lost.size} triangles have lost their area, the first is {lost[0]} in panel {name}"
+        )
+
+
+def _contact_figures(process: Process, contact: FoamContact) -> dict[str, float]:
+    """Depth, pressure and balance of the contact."""
+    pressure = contact.pressure()
+    return {
+        "contact_depth_max": float(contact.depth.max()),
+        "contact_pressure_max": float(pressure.max()),
+        "contact_compression_max": contact.compression(process.x),
+        "contact_force": float(contact.force.sum()),
+        "contact_vertices": float(np.count_nonzero(contact.force)),
+        "contact_resultant_error": _resultant_error(process),
+    }
+
+
+def _contact_reasons(process: Process, contact: FoamContact) -> list[str]:
+    """Where the foam is asked for more than its curve and thickness give."""
+    found = []
+    foam = process.cover.foam
+    highest = float(contact.pressure().max())
+    limit = float(foam.material.stress[-1]) if foam is not None else np.inf
+    if highest > limit:
+        found.append(f"pressure {highest:.3g} Pa on the foam, whose curve ends at {limit:.3g} Pa")
+    compression = contact.compression(process.x)
+    if compression >= COMPRESSION:
+        found.append(f"foam pressed to {100 * compression:.0f} % of its thickness")
+    error = _resultant_error(process)
+    if error > RESULTANT:
+        found.append(f"foam pressure and resultant differ by {100 * error:.2g} %")
+    return found
+
+
+def _resultant_error(process: Process) -> float:
+    """Sum of all forces on the cover over what the foam has to carry."""
+    forces = process.resultants()
+    rest = forces["ties"] + forces["weight"]
+    total = rest + forces["contact"] + forces["friction"]
+    size = float(np.linalg.norm(rest))
+    return float(np.linalg.norm(total)) / size if size > 0 else 0.0
