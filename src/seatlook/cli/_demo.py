@@ -96,7 +96,7 @@ def flatten(
     allowance_mm
         Seam allowance and hem round every panel.
     """
-    from seatlook import design, io
+    from seatlook import design, files, io
 
     read = io.read_surface(surface, unit=unit)
     flat = design.flatten(
@@ -106,6 +106,7 @@ def flatten(
         starve=_shares("--starve", starve),
     )
     _write_pattern(flat, out)
+    files.write_text(out / "placement.toml", _placement(flat) + "\n")
     table(
         ("panel", "area_cm2", "strain_mean", "strain_rms", "strain_smallest", "strain_largest"),
         [(p.panel, 1e4 * p.area, p.mean, p.rms, p.smallest, p.largest) for p in flat.panels],
@@ -122,17 +123,22 @@ def write_demo(
     insert: str,
     element_size_mm: float,
     seed: int,
+    surface_size: float = 0.006,
 ) -> None:
-    """Write the demo's design surface, foam, wires, pattern, seams and scene."""
+    """Write the demo's design surface, foam, wires, pattern, seams and scene.
+
+    ``surface_size`` [m] is the edge length of design surface and foam, which stay the same
+    however the cover is meshed.
+    """
     from seatlook import design, files, io
 
     thickness = io.read_material(material).fabric.thickness
     io.read_material(insert)
     with progress() as show:
         show("flatten")
-        surface = design.demo_design()
+        surface = design.demo_design(element_size=surface_size)
         flat = design.flatten(surface, ease=ease, starve=starve)
-        foam = design.demo_foam_mesh(cover_thickness=thickness)
+        foam = design.demo_foam_mesh(element_size=surface_size, cover_thickness=thickness)
     io.write_surface(
         io.GroupedMesh(surface.vertices, surface.faces, surface.panel, surface.panel_names),
         out / "design.obj",
@@ -153,11 +159,10 @@ def write_demo(
 
 
 def _write_pattern(flat: Flattened, out: Path) -> None:
-    from seatlook import files, io
+    from seatlook import io
 
     io.write_dxf(flat.pattern, out / "pattern.dxf", style="seatlook")
     io.write_seams(flat.pattern, out / "seams.toml")
-    files.write_text(out / "placement.toml", _placement(flat) + "\n")
 
 
 def _placement(flat: Flattened) -> str:

@@ -27,7 +27,8 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[Any]], *, json: bool) ->
     rows = list(rows)
     if json:
         pairs = tuple(heads) == ("what", "value")
-        data = dict(rows) if pairs else [dict(zip(heads, row, strict=True)) for row in rows]
+        objects = [dict(zip(heads, row, strict=True)) for row in rows]
+        data = {row[0]: row[1] for row in rows} if pairs else objects
         sys.stdout.write(json_module.dumps(data, indent=1) + "\n")
         return
     cells = [list(heads), *([_text(cell) for cell in row] for row in rows)]
@@ -62,15 +63,14 @@ def progress() -> Iterator[Say]:
         task = bar.add_task("", total=None, figures="")
 
         def show(name: str, /, **figures: float | str) -> None:
-            done, total = figures.pop("step", None), figures.pop("steps", None)
-            words = [name, *(str(v) for v in figures.values() if isinstance(v, str))]
-            numbers = (f"{k} {v:.2g}" for k, v in figures.items() if not isinstance(v, str))
+            words = [name, *(v for v in figures.values() if isinstance(v, str))]
+            numbers = {k: v for k, v in figures.items() if not isinstance(v, str)}
             bar.update(
                 task,
                 description=" ".join(words),
-                figures="  ".join(numbers),
-                total=total,
-                completed=done or 0,
+                completed=numbers.pop("step", 0),
+                total=numbers.pop("steps", None),
+                figures="  ".join(f"{k} {v:.2g}" for k, v in numbers.items()),
             )
 
         yield show

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import astuple, fields, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
@@ -181,12 +182,11 @@ def render(
     read = load(scene)
     cameras = {camera.name: camera for camera in read.cameras}
     rigs = {r.name: r for r in read.rigs}
+    looks = _chosen("--texture", texture, read.textures)
     chosen = replace(
         read,
         rigs=tuple(rigs[name] for name in _chosen("--rig", rig, rigs)),
-        textures={
-            name: read.textures[name] for name in _chosen("--texture", texture, read.textures)
-        },
+        textures=MappingProxyType({name: read.textures[name] for name in looks}),
     )
     camera = cameras[_chosen("--view", (view,) if view else (), cameras)[0]]
     solution = _result(read, result)

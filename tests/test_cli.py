@@ -1,0 +1,235 @@
+"""The command line as a user meets it: exit codes, where output goes, what messages say."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from seatlook.cli import app, run
+
+COMMANDS = [name for name in app if not name.startswith("-")]
+
+
+def seatlook(*words: str, cwd: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "seatlook", *words],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        env={**os.environ, **environment},
+        check=False,
+    )
+
+
+@pytest.mark.parametrize("command", [*COMMANDS, "materials list", "materials show"])
+def test_every_command_explains_itself_with_an_example(command, capsys):
+    assert run([*command.split(), "--help"]) == 0
+    said = capsys.readouterr()
+    assert said.err == ""
+    if command != "materials":
+        assert f"Example: seatlook {command}" in " ".join(said.out.split())
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["chek", "a.toml"], 'Unknown command "chek". Did you mean "check"?'),
+        (["evaluate"], 'Command "evaluate" parameter'),
+        (["evaluate", "a.toml"], "--out"),
+        (["evaluate", "a.toml", "--out", "o", "--seed", "x"], "seed"),
+        (["materials", "show", "sued"], "did you mean 'suede'?"),
+        (["solve", "a.toml", "--out", "a.txt"], "--out: got a.txt, expected a name that ends in"),
+        (["demo", "--ease", "2%"], "--ease: got '2%', expected NAME=2%"),
+        (["demo", "--starve", "INSERT=much"], "--starve: got 'INSERT=much', expected NAME=2%"),
+        (["demo", "--material", "sued"], "did you mean 'suede'?"),
+    ],
+)
+def test_wrong_words_end_with_2_and_one_message(words, message, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run(words) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert message in said.err
+    assert "Traceback" not in said.err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", ["check", "evaluate", "solve"])
+def test_all_faults_of_a_scene_are_told_with_their_lines(command, capsys, tmp_path):
+    scene = tmp_path / "seat.toml"
+    scene.write_text(
+        'schema = 1\n[pattern]\nfile = "none.dxf"\nseams = 3\n[foam]\nfiel = "a.obj"\n'
+        '[mesh]\nelement_size_mm = "small"\n'
+    )
+    out = [] if command == "check" else ["--out", str(tmp_path / "out.npz")]
+    assert run([command, str(scene), *out]) == 2
+    errors = capsys.readouterr().err
+    assert f"{scene}:8: mesh.element_size_mm: got 'small', expected a number" in errors
+    assert f"{scene}:4: pattern.seams: got 3" in errors
+    assert "did you mean 'file'?" in errors
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["seat.toml"]
+
+
+def test_a_missing_scene_is_named(capsys, tmp_path):
+    assert run(["check", str(tmp_path / "none.toml")]) == 2
+    assert "none.toml" in capsys.readouterr().err
+
+
+def test_materials_as_data(capsys):
+    assert run(["materials", "list", "--json"]) == 0
+    rows = {row["name"]: row for row in json.loads(capsys.readouterr().out)}
+    assert rows["suede"]["kind"] == "cover"
+    assert rows["suede"]["thickness_mm"] == pytest.approx(0.9)
+    assert rows["foam-seat"] == {
+        "name": "foam-seat",
+        "kind": "foam",
+        "thickness_mm": None,
+        "roughness": None,
+    }
+    assert run(["materials", "show", "suede"]) == 0
+    assert "[fabric]" in capsys.readouterr().out
+
+
+def test_a_fault_of_seatlook_is_told_from_wrong_input(capsys, monkeypatch):
+    from seatlook import io
+
+    monkeypatch.setattr(io, "load_scene", lambda path: 1 / 0, raising=False)
+    assert run(["check", "a.toml"]) == 70
+    assert "ZeroDivisionError" in capsys.readouterr().err
+
+
+def test_doctor_names_the_library_it_found(tmp_path):
+    done = seatlook("doctor", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["GL window"].startswith("vtk")
+    assert found["cores"] == os.cpu_count()
+
+
+HIDDEN = """
+import ctypes, sys
+real = ctypes.CDLL
+class Hidden(real):
+    def __init__(self, name, *args, **options):
+        if name and ("EGL" in str(name) or "OSMesa" in str(name)):
+            raise OSError(f"{name}: cannot open shared object file")
+        super().__init__(name, *args, **options)
+ctypes.CDLL = Hidden
+from seatlook.cli import run
+sys.exit(run(sys.argv[1:]))
+"""
+
+
+@pytest.mark.parametrize("command", ["doctor", "evaluate"])
+def test_without_a_gl_library_it_ends_with_3_before_any_work(command, demo_scene, tmp_path):
+    words = ["doctor"]
+    if command == "evaluate":
+        words = ["evaluate", str(demo_scene), "--out", str(tmp_path / "out")]
+    done = subprocess.run(
+        [sys.executable, "-c", HIDDEN, *words], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 3
+    assert done.stdout == ""
+    assert "as root:" in done.stderr
+    assert "without root:" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.fixture(scope="session")
+def demo_scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the demo's files, spoiled, on a coarse mesh."""
+    from seatlook.cli._demo import write_demo
+
+    folder = tmp_path_factory.mktemp("demo")
+    write_demo(
+        folder,
+        ease={},
+        starve={"REAR": 0.01},
+        material="leather-laminate",
+        insert="suede-laminate",
+        element_size_mm=25.0,
+        seed=3,
+        surface_size=0.02,
+    )
+    return folder / "scene.toml"
+
+
+def test_the_demo_scene_is_complete_and_says_what_is_spoiled(demo_scene):
+    from seatlook import io
+
+    scene = io.load_scene(demo_scene)
+    assert len(scene.pattern.panels) == 7
+    assert len(scene.hooks) == 2
+    assert len(scene.frames) == 4
+    assert [rig.name for rig in scene.rigs] == ["sun", "bulb left", "bulb right"]
+    assert scene.seed == 3
+    assert scene.materials["INSERT"].name == "suede-laminate"
+    assert scene.materials["FRONT"].name == "leather-laminate"
+    assert "Spoiled on purpose: starve REAR 1.0%" in demo_scene.read_text()
+
+
+def test_check_tells_what_would_be_solved(demo_scene, capsys):
+    assert run(["check", str(demo_scene), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["panels"], found["seams"], found["hooks_and_frames"]) == (7, 14, 6)
+    assert found["element_size_mm"] == pytest.approx(25, rel=0.15)
+    ratio = found["wavelength_mm"] / found["element_size_mm"]
+    assert found["wavelength_over_element_size"] == pytest.approx(ratio)
+    assert run(["check", str(demo_scene), "--element-size-mm", "40"]) == 0
+    assert "element_size_mm" in capsys.readouterr().out
+
+
+def test_flatten_writes_a_pattern_and_its_strains(demo_scene, tmp_path, capsys):
+    from seatlook import io
+
+    surface = demo_scene.with_name("design.obj")
+    assert run(["flatten", str(surface), "--out", str(tmp_path), "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert {row["panel"] for row in rows} >= {"INSERT", "BOLSTER_L", "REAR"}
+    assert all(
+        row["strain_smallest"] <= row["strain_mean"] <= row["strain_largest"] for row in rows
+    )
+    pattern = io.read_pattern(tmp_path / "pattern.dxf", tmp_path / "seams.toml")
+    assert len(pattern.seams) == 14
+    assert "[placement.INSERT]" in (tmp_path / "placement.toml").read_text()
+
+
+def test_flatten_eases_one_side_of_a_seam(demo_scene, tmp_path):
+    from seatlook import io
+
+    surface = str(demo_scene.with_name("design.obj"))
+    assert run(["flatten", surface, "--out", str(tmp_path), "--ease", "INSERT-BOLSTER_L=2%"]) == 0
+    pattern = io.read_pattern(tmp_path / "pattern.dxf", tmp_path / "seams.toml")
+    seam = next(s for s in pattern.seams if s.name == "INSERT-BOLSTER_L")
+    lengths = [pattern.edge_length(name) for name in (seam.a, *seam.b)]
+    assert max(lengths) / min(lengths) == pytest.approx(1.02, abs=0.002)
+
+
+@pytest.mark.parametrize("share", ["ease", "starve"])
+def test_flatten_names_a_seam_or_panel_that_does_not_exist(demo_scene, tmp_path, capsys, share):
+    surface = str(demo_scene.with_name("design.obj"))
+    assert run(["flatten", surface, "--out", str(tmp_path / "o"), f"--{share}", "INSRT=2%"]) == 2
+    assert "INSRT" in capsys.readouterr().err
+    assert not (tmp_path / "o").exists()
+
+
+def test_an_interrupted_command_ends_with_130_and_leaves_nothing_half_written(tmp_path):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "seatlook", "demo", "--out", str(tmp_path / "demo")],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors == "interrupted; no file was left half written\n"
+    assert [p for p in tmp_path.rglob(".*") if p.is_file()] == []
