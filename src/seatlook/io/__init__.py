@@ -8,6 +8,7 @@ from typing import Any
 # name -> module
 _PUBLIC: dict[str, str] = {
     "GroupedMesh": "surface",
+    "export": "exports",
     "list_foam_materials": "material",
     "list_materials": "material",
     "load_scene": "scene",

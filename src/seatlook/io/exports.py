@@ -1,0 +1,39 @@
+"""Exports of a solved cover for other programs; the result file stays the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from seatlook.errors import InputError
+from seatlook.io._schema import shown
+from seatlook.io.face_csv import write_csv
+from seatlook.io.glb import write_glb
+from seatlook.io.vtp import write_vtp
+from seatlook.model import Solution, WrinkleMap
+
+# A new export is one writer here.
+WRITERS: dict[str, Callable[[Solution, WrinkleMap, Path], None]] = {
+    ".vtp": write_vtp,
+    ".csv": write_csv,
+    ".glb": write_glb,
+}
+
+
+def export(solution: Solution, indices: WrinkleMap, path: Path) -> None:
+    """Write a solved cover and its indices in the format that the path's ending names.
+
+    Raises
+    ------
+    InputError
+        When there is no such format, or the indices are of another cover.
+    """
+    writer = WRITERS.get(path.suffix.lower())
+    if writer is None:
+        expected = f"one of {', '.join(WRITERS)}"
+        raise InputError.single("file", got=shown(path.suffix), expected=expected, file=path)
+    if len(indices.c) != len(solution.cover.faces):
+        raise InputError.single(
+            "indices", got=f"{len(indices.c)} faces", expected=f"{len(solution.cover.faces)}"
+        )
+    writer(solution, indices, path)

@@ -1,0 +1,104 @@
+"""The solved cover as binary glTF, for viewers, Blender and game engines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+from trimesh.exchange.gltf import export_glb
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
+
+from seatlook.files import write_bytes
+from seatlook.model import Appearance, FloatArray, IntArray, Material, Solution, WrinkleMap
+
+# The library is typed, but these three are not.
+_surface: Any = TextureVisuals
+_pbr: Any = PBRMaterial
+_export_glb: Any = export_glb
+
+
+def write_glb(solution: Solution, indices: WrinkleMap, path: Path) -> None:
+    """Write one mesh per panel with its material, y up, in metres.
+
+    The custom attributes ``_W2``, ``_W_STRETCH`` and ``_W_COMPRESSION`` are of the vertices:
+    means over the faces around them in their own panel, weighted by rest area. Texture coordinates
+    are pattern coordinates in metres. Sheen and coat are written as KHR_materials_sheen and
+    KHR_materials_clearcoat; the grain is not written.
+    """
+    cover = solution.cover
+    scene = trimesh.Scene()
+    for number, (name, material) in enumerate(zip(cover.panel_names, cover.materials, strict=True)):
+        mine = np.flatnonzero(cover.panel == number)
+        used, faces = np.unique(cover.faces[mine], return_inverse=True)
+        faces = faces.reshape(-1, 3)
+        area = cover.rest_area[mine]
+        mesh = trimesh.Trimesh(
+            # z up to y up
+            vertices=solution.positions[used][:, [0, 2, 1]] * [1.0, 1.0, -1.0],
+            faces=faces,
+            process=False,
+            visual=_surface(uv=cover.uv[used], material=_pbr(name=material.name)),
+        )
+        for key, values in (
+            ("_W2", indices.w2),
+            ("_W_STRETCH", indices.w_stretch),
+            ("_W_COMPRESSION", indices.w_compression),
+        ):
+            mean = vertex_means(values[mine], faces, area, len(used))
+            mesh.vertex_attributes[key] = mean.astype(np.float32)
+        scene.add_geometry(mesh, geom_name=name, node_name=name)
+    looks = {material.name: material for material in cover.materials}
+
+    def write_materials(tree: dict[str, Any]) -> None:
+        for entry in tree["materials"]:
+            entry |= _gltf_material(looks[entry["name"]])
+        used = {key for entry in tree["materials"] for key in entry.get("extensions", ())}
+        if used:
+            tree["extensionsUsed"] = sorted(used)
+
+    # The exporter rounds colours to 8 bits, so the materials are written into its tree.
+    content = _export_glb(scene, include_normals=True, tree_postprocessor=write_materials)
+    write_bytes(path, content)
+
+
+def vertex_means(values: FloatArray, faces: IntArray, area: FloatArray, count: int) -> FloatArray:
+    """Return the area-weighted means (count,) of face values (m,) at the vertices.
+
+    Examples
+    --------
+    >>> faces = np.array([[0, 1, 2], [0, 2, 3]])
+    >>> vertex_means(np.array([1.0, 4.0]), faces, np.array([2.0, 1.0]), 4).tolist()
+    [2.0, 1.0, 2.0, 4.0]
+    """
+    total, weight = np.zeros(count), np.zeros(count)
+    np.add.at(total, faces, (values * area)[:, None])
+    np.add.at(weight, faces, area[:, None])
+    return total / weight
+
+
+def _gltf_material(material: Material) -> dict[str, Any]:
+    look: Appearance = material.appearance
+    extensions: dict[str, Any] = {}
+    if look.sheen.any():
+        extensions["KHR_materials_sheen"] = {
+            "sheenColorFactor": look.sheen.tolist(),
+            "sheenRoughnessFactor": look.sheen_roughness,
+        }
+    if look.coat > 0:
+        extensions["KHR_materials_clearcoat"] = {
+            "clearcoatFactor": look.coat,
+            "clearcoatRoughnessFactor": look.coat_roughness,
+        }
+    entry: dict[str, Any] = {
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [*look.albedo.tolist(), 1.0],
+            "metallicFactor": look.metalness,
+            "roughnessFactor": look.roughness,
+        },
+        # The wrong side shows where a cover gapes; culling it would leave a hole.
+        "doubleSided": True,
+    }
+    return entry | ({"extensions": extensions} if extensions else {})
