@@ -19,7 +19,6 @@ RIGS = (
         name="bulb_left", ev100=6.53, illuminance=64.0, lights=("bulb, 800 lm", "sky, 2 cd/m2")
     ),
 )
-VIRIDIS = ("#440154", "#3b528b", "#21918c", "#5ec962", "#fde725")
 
 
 def write_png(path: Path, image: np.ndarray) -> None:
@@ -69,8 +68,7 @@ def page_data(folder: Path, **changes: object) -> PageData:
                 image=f"maps/{name}.png",
                 low=-1.5 if name == "W1" else 0.0,
                 high=1.5,
-                colours=VIRIDIS,
-                meaning="Curvature over its threshold.",
+                meaning="curvature over its threshold",
             )
         )
     (folder / "zones.csv").write_text("zone,W2\n")

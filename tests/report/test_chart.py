@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from seatlook.report.chart import HEIGHT, WIDTH, bar_ticks, history_charts, number
+from seatlook.report.chart import HEIGHT, WIDTH, history_charts, number
 
 
 @pytest.mark.parametrize(
@@ -61,9 +61,3 @@ def test_what_an_axis_cannot_show_breaks_the_line():
 @pytest.mark.parametrize("values", [[], [1.0], [2.0, 2.0], [math.nan, math.nan]])
 def test_a_column_that_never_changes_gets_no_chart(values):
     assert history_charts({"gap": values}) == ()
-
-
-def test_colour_bar_ticks_span_the_range():
-    ticks = bar_ticks(-1.5, 1.5)
-    assert [t.at for t in ticks] == [0.0, 80.0, 160.0, 240.0, 320.0]
-    assert [t.label for t in ticks] == ["−1.50", "−0.750", "0", "0.750", "1.50"]

@@ -106,11 +106,9 @@ def test_only_files_below_the_page_are_linked(tmp_path, name):
         page_data(tmp_path, files=(name,))
 
 
-def test_a_map_needs_a_range_and_colours():
+def test_a_map_needs_a_range():
     with pytest.raises(InputError, match="got 1 to 1, expected low < high"):
-        MapView(name="W2", image="a.png", low=1.0, high=1.0, colours=("#000000", "#ffffff"))
-    with pytest.raises(InputError, match="two colours"):
-        MapView(name="W2", image="a.png", low=0.0, high=1.0, colours=("#000000",))
+        MapView(name="W2", image="a.png", low=1.0, high=1.0)
 
 
 def test_a_ragged_table_is_refused():

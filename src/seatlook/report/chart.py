@@ -58,12 +58,6 @@ def number(value: float | str | None) -> str:
     return text.replace("-", "−")
 
 
-def bar_ticks(low: float, high: float, count: int = 5) -> tuple[Tick, ...]:
-    """Marks at equal steps along a colour bar of width ``WIDTH``."""
-    steps = [k / (count - 1) for k in range(count)]
-    return tuple(Tick(at=WIDTH * s, label=number(low + s * (high - low))) for s in steps)
-
-
 def history_charts(history: Mapping[str, Sequence[float]]) -> tuple[Chart, ...]:
     """One chart for each column that changes, over "time" if given, else over the step number."""
     time = history.get("time")

@@ -28,13 +28,12 @@ class RigHead:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapView:
-    """A wrinkle index drawn on the cover from the gallery's camera.
+    """A wrinkle index drawn on the cover, with its colour bar, from the gallery's camera.
 
     Parameters
     ----------
     image : path relative to the page
-    low, high : float [unit]    values at the two ends of ``colours``
-    colours : "#rrggbb" at equal steps from ``low`` to ``high``, at least two
+    low, high : float [unit]    values at the two ends of the colour bar
     meaning : one sentence for a reader who does not know the equation
     """
 
@@ -42,7 +41,6 @@ class MapView:
     image: str
     low: float
     high: float
-    colours: tuple[str, ...]
     unit: str = "1"
     meaning: str = ""
 
@@ -50,10 +48,6 @@ class MapView:
         if not self.low < self.high:
             raise InputError.single(
                 f"map {self.name}", got=f"{self.low:g} to {self.high:g}", expected="low < high"
-            )
-        if len(self.colours) < 2:
-            raise InputError.single(
-                f"map {self.name}.colours", got=self.colours, expected="two colours or more"
             )
 
 

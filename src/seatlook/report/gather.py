@@ -16,14 +16,31 @@ from seatlook.report.chart import number
 from seatlook.report.data import Check, MapView, PageData, RigHead, Table
 from seatlook.report.page import write_page
 from seatlook.report.parameters import parameter_table
-from seatlook.solver import foam_wavelength
+from seatlook.solver import foam_wavelength, verdict
+from seatlook.solver.process import RESIDUAL
 
 # figure -> what it is, its limit, factor to the unit, unit
 _CONDITIONS: Mapping[str, tuple[str, float, float, str]] = {
-    "residual": ("out-of-balance force over mean elastic force", 1e-3, 1.0, ""),
-    "seam_gap_max": ("largest seam gap", 1e-4, 1e3, " mm"),
-    "kinetic_share": ("kinetic over elastic energy", 1e-4, 1.0, ""),
+    "residual": ("out-of-balance force over mean elastic force", RESIDUAL, 1.0, ""),
+    "kinetic_ratio": ("kinetic over elastic energy", verdict.KINETIC, 1.0, ""),
+    "seam_gap_max": ("largest seam gap", verdict.SEAM_GAP, 1e3, " mm"),
+    "hook_gap_max": ("largest distance of a hook from its wire", verdict.ANCHOR_GAP, 1e3, " mm"),
+    "frame_gap_max": ("largest distance of a free edge", verdict.ANCHOR_GAP, 1e3, " mm"),
+    "contact_compression_max": (
+        "foam pressed, share of its thickness",
+        verdict.COMPRESSION,
+        1e2,
+        " %",
+    ),
+    "contact_resultant_error": (
+        "foam pressure against resultant",
+        verdict.RESULTANT,
+        1e2,
+        " %",
+    ),
 }
+# Columns of the history that say how the solution came about.
+_CHARTED = ("energy", "elastic", "kinetic", "residual", "seam_gap")
 _LOOSE_MESH = 8.0  # lambda / h below which the wrinkles' shape is not resolved
 _FINE_MESH = 12.0  # lambda / h from which the indices are
 
@@ -55,7 +72,7 @@ def page_data(evaluation: Evaluation) -> PageData:
         checks=(*_conditions(solution), *_limits(evaluation)),
         warnings=tuple(_warnings(evaluation, waves)),
         history=MappingProxyType(
-            {name: tuple(map(float, column)) for name, column in solution.history.items()}
+            {name: tuple(solution.history[name].tolist()) for name in _CHARTED}
         ),
         files=(RESULT, "zones.csv"),
     )
@@ -88,7 +105,6 @@ def _maps(evaluation: Evaluation) -> Iterator[MapView]:
             image=path,
             low=low,
             high=high,
-            colours=picture.colours,
             meaning=MAPS[name],
         )
 
@@ -123,6 +139,8 @@ def _zones(evaluation: Evaluation) -> Table:
 
 def _conditions(solution: Solution) -> Iterator[Check]:
     for name, (what, limit, factor, unit) in _CONDITIONS.items():
+        if name not in solution.figures:
+            continue  # a cover without foam touches none
         value = solution.figures[name]
         yield Check(
             name=what,
@@ -133,12 +151,12 @@ def _conditions(solution: Solution) -> Iterator[Check]:
 
 
 def _limits(evaluation: Evaluation) -> Iterator[Check]:
-    for verdict in evaluation.verdicts:
+    for found in evaluation.verdicts:
         yield Check(
-            name=f"{verdict.limit.zone}: {verdict.limit.measure}",
-            value=number(verdict.value),
-            limit=number(verdict.limit.maximum),
-            kept=verdict.kept,
+            name=f"{found.limit.zone}: {found.limit.measure}",
+            value=number(found.value),
+            limit=number(found.limit.maximum),
+            kept=found.kept,
         )
 
 
@@ -181,4 +199,5 @@ def _provenance(evaluation: Evaluation, waves: Mapping[str, float]) -> Iterator[
         )
     yield "solver status", solution.status
     for name, value in solution.figures.items():
-        yield f"solver {name.replace('_', ' ')}", number(value)
+        if "/" not in name:  # those of one seam or hook are in the result file
+            yield f"solver {name.replace('_', ' ')}", number(value)

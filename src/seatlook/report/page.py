@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from seatlook import files
 from seatlook.errors import InputError
-from seatlook.report.chart import HEIGHT, WIDTH, bar_ticks, history_charts, number
+from seatlook.report.chart import HEIGHT, WIDTH, history_charts, number
 from seatlook.report.data import PageData
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -66,7 +66,6 @@ def page_html(data: PageData) -> str:
         style=Markup(style),
         script=Markup(script),
         charts=history_charts(data.history),
-        bar_ticks=bar_ticks,
         chart_size=(WIDTH, HEIGHT),
     )
 
