@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -17,15 +18,19 @@ Key = tuple[str | int, ...]
 _STRINGS_AND_COMMENTS = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|#.*')
 
 
-@dataclass(slots=True)
+@dataclass
 class Document:
-    """A parsed TOML file, the line of each of its keys, and the problems found in it so far."""
+    """A parsed TOML file and the problems found in it so far."""
 
     file: Path
     content: bytes
     data: dict[str, Any]
-    lines: dict[Key, int]
     problems: list[Problem] = field(default_factory=list)
+
+    @cached_property
+    def lines(self) -> dict[Key, int]:
+        """Key -> line; only messages need it, and it takes longer than parsing."""
+        return index_lines(self.content.decode())
 
     def line(self, key: Key) -> int | None:
         """Return the line of ``key``, or of the innermost table around it that has one."""
@@ -112,8 +117,7 @@ def read_document(path: Path) -> Document:
     """
     content = read_file(path)
     try:
-        text = content.decode()
-        data = tomllib.loads(text)
+        data = tomllib.loads(content.decode())
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
         raise InputError.single(
@@ -131,7 +135,7 @@ def read_document(path: Path) -> Document:
         raise InputError.single(
             "syntax", got=what.lower(), expected="valid TOML", file=path, line=line
         ) from error
-    return Document(file=path, content=content, data=data, lines=index_lines(text))
+    return Document(file=path, content=content, data=data)
 
 
 def read_file(path: Path, *, named_by: Key = ("file",)) -> bytes:

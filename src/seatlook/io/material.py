@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -207,8 +208,8 @@ def material_path(name_or_path: str | Path, *, beside: Path | None = None) -> Pa
     if text.endswith(".toml"):
         return (beside or Path()) / text
     path = materials_dir() / f"{text}.toml"
-    names = (*list_materials(), *list_foam_materials())
-    if text not in names:
+    if path.name != f"{text}.toml" or not path.is_file():
+        names = (*list_materials(), *list_foam_materials())
         raise InputError.single(
             "material",
             got=shown(text),
@@ -231,7 +232,7 @@ def linear_from_srgb(encoded: Any) -> Any:
 
 def _names(table: str) -> tuple[str, ...]:
     files = sorted(materials_dir().glob("*.toml"))
-    return tuple(f.stem for f in files if table in read_document(f).data)
+    return tuple(f.stem for f in files if table in tomllib.loads(f.read_text(encoding="utf-8")))
 
 
 def _source(keys: dict[str, Kind]) -> Table:

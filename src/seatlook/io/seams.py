@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from seatlook.errors import did_you_mean
+from seatlook.errors import InputError, did_you_mean
 from seatlook.files import write_text
 from seatlook.io._schema import (
     MM,
@@ -74,12 +74,11 @@ def read_panels(
     path: Path, *, size: str | None = None, units: Units | None = None
 ) -> tuple[Panel, ...]:
     """Read the panels of a pattern file of any format in ``READERS``."""
-    document = Document(file=path, content=b"", data={}, lines={})
     reader = READERS.get(path.suffix.lower())
     if reader is None:
-        document.report(("file",), shown(path.suffix), f"one of {', '.join(READERS)}")
-        document.finish()
-    return READERS[path.suffix.lower()](path, size=size, units=units)
+        expected = f"one of {', '.join(READERS)}"
+        raise InputError.single("file", got=shown(path.suffix), expected=expected, file=path)
+    return reader(path, size=size, units=units)
 
 
 def read_pattern(
