@@ -1,0 +1,220 @@
+"""The whole chain, readable top to bottom: scene -> cover -> solution -> indices -> pictures."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from seatlook import io, pbr
+from seatlook.assembly import assemble
+from seatlook.errors import InputError
+from seatlook.files import replacing
+from seatlook.model import Camera, Cover, Limit, Scene, Solution, WrinkleMap
+from seatlook.solver import solve
+from seatlook.wrinkle import ZoneRow, surface_strains, wrinkle_indices, zone_table
+
+if TYPE_CHECKING:
+    from seatlook.pbr import Picture
+
+RESULT = "result.npz"
+MAPS: Mapping[str, str] = MappingProxyType(
+    {
+        "w1": "curvature over the threshold: crowns above 0, valleys below",
+        "w2": "valleys only: 1 is a wrinkle as deep as the threshold",
+        "w_stretch": "the part of W2 where the fabric is stretched one way",
+        "w_compression": "the part of W2 where there is too much fabric",
+    }
+)
+
+
+class Progress(Protocol):
+    """What ``evaluate`` calls as it goes on: the step's name, and the solver's figures if any."""
+
+    def __call__(self, name: str, /, **figures: float | str) -> None: ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """One limit of ``[accept]`` and what was found."""
+
+    limit: Limit
+    value: float
+
+    @property
+    def kept(self) -> bool:
+        """Whether the value is at most the limit's maximum."""
+        return self.value <= self.limit.maximum
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Evaluation:
+    """What ``evaluate`` found, and where it left the pictures (paths relative to ``folder``)."""
+
+    scene: Scene
+    folder: Path
+    solution: Solution
+    indices: WrinkleMap
+    zones: tuple[ZoneRow, ...]
+    camera: Camera
+    pictures: MappingProxyType[tuple[str, str], str]
+    maps: MappingProxyType[str, tuple[str, Picture]]
+    verdicts: tuple[Verdict, ...]
+
+    @property
+    def accepted(self) -> bool:
+        """Whether every limit of the scene is kept."""
+        return all(v.kept for v in self.verdicts)
+
+
+def evaluate(
+    scene: Scene, out: Path, *, resume: bool = False, progress: Progress | None = None
+) -> Evaluation:
+    """Sew, hook and cover a scene, judge its wrinkles, and draw it.
+
+    Parameters
+    ----------
+    scene : Scene
+    out : folder for ``result.npz``, ``zones.csv``, ``images/`` and ``maps/``
+    resume : take ``out/result.npz`` instead of solving, if it is of this very scene
+
+    Raises
+    ------
+    NoOffscreenContext
+        Before anything is solved, if nothing could be drawn afterwards.
+    InputError, SolverError, RenderError
+    """
+    say = progress or _silent
+    pbr.offscreen_backend()
+    solution = _earlier_result(scene, out) if resume else None
+    if solution is None:
+        say("mesh")
+        cover = assemble(scene)
+        solution = solve(cover, progress=lambda **figures: say("solve", **figures))
+        io.write_result(solution, out / RESULT)
+    indices = wrinkle_map(scene, solution)
+    zones = zone_table(solution, indices)
+    _write_zones(zones, out / "zones.csv")
+    camera = scene.cameras[0]
+    return Evaluation(
+        scene=scene,
+        folder=out,
+        solution=solution,
+        indices=indices,
+        zones=zones,
+        camera=camera,
+        pictures=draw_pictures(scene, solution, camera, out, say),
+        maps=draw_maps(solution, indices, camera, out, say),
+        verdicts=tuple(_judge(limit, scene, zones) for limit in scene.limits),
+    )
+
+
+def wrinkle_map(scene: Scene, solution: Solution) -> WrinkleMap:
+    """Evaluate the indices with the scene's curvature mode and thresholds."""
+    return wrinkle_indices(
+        *surface_strains(solution),
+        solution.cover.thickness,
+        _thresholds(scene, solution.cover),
+        curvature=scene.curvature,
+    )
+
+
+def draw_pictures(
+    scene: Scene, solution: Solution, camera: Camera, out: Path, say: Progress
+) -> MappingProxyType[tuple[str, str], str]:
+    """Render every texture under every rig; return (texture, rig) -> path below ``out``."""
+    pictures = {}
+    for rig in scene.rigs:
+        for name, appearance in scene.textures.items():
+            say("render", rig=rig.name, texture=name)
+            path = f"images/{_slug(rig.name)}/{_slug(name)}.png"
+            pbr.render(solution, appearance, rig=rig, camera=camera).save(out / path)
+            pictures[name, rig.name] = path
+    return MappingProxyType(pictures)
+
+
+def draw_maps(
+    solution: Solution, indices: WrinkleMap, camera: Camera, out: Path, say: Progress
+) -> MappingProxyType[str, tuple[str, Picture]]:
+    """Draw the four maps from one camera; the causes share the range of W2 they add up to."""
+    # Eight in a thousand faces may lie above: a single pinched triangle must not wash out a map.
+    top = max(1.0, float(np.quantile(indices.w2, 0.992)))
+    maps = {}
+    for name, title in MAPS.items():
+        say("map", name=name)
+        low = -top if name == "w1" else 0.0
+        picture = pbr.render_map(
+            solution,
+            getattr(indices, name),
+            camera=camera,
+            title=f"{label(name)}: {title}",
+            unit="1",
+            value_range=(low, top),
+        )
+        path = f"maps/{name}.png"
+        picture.save(out / path)
+        maps[name] = (path, picture)
+    return MappingProxyType(maps)
+
+
+def label(index: str) -> str:
+    """Return the index as it is written: ``w_stretch`` is W_stretch.
+
+    Examples
+    --------
+    >>> label("w_stretch")
+    'W_stretch'
+    """
+    return index[0].upper() + index[1:]
+
+
+def _silent(name: str, /, **figures: float | str) -> None:
+    """Report nothing."""
+
+
+def _earlier_result(scene: Scene, out: Path) -> Solution | None:
+    """Return the stored solution if it is converged and of this very scene."""
+    path = out / RESULT
+    if not path.exists():
+        return None
+    solution = io.read_result(path)
+    same = solution.cover.scene_digest == scene.digest and solution.cover.seed == scene.seed
+    return solution if same and solution.status == "converged" else None
+
+
+def _thresholds(scene: Scene, cover: Cover) -> np.ndarray:
+    """C_threshold per face, (m,) [1/m]: the material's own, else the scene's."""
+    own = [m.c_threshold or scene.c_threshold for m in cover.materials]
+    return np.array(own)[cover.panel]
+
+
+def _judge(limit: Limit, scene: Scene, zones: tuple[ZoneRow, ...]) -> Verdict:
+    """Compare a limit with the worst of the zones it names (a zone, or a visibility class)."""
+    classes = {box.name: box.visibility for box in scene.boxes}
+    rows = [r for r in zones if limit.zone in (r.zone, classes.get(r.zone))]
+    if not rows:
+        raise InputError.single(
+            "accept",
+            got=f"zone {limit.zone!r} without a face",
+            expected=f"one of {', '.join(r.zone for r in zones)}",
+            file=scene.path,
+        )
+    return Verdict(limit=limit, value=max(getattr(r, limit.measure) for r in rows))
+
+
+def _write_zones(zones: tuple[ZoneRow, ...], path: Path) -> None:
+    """Write the zone table as CSV, one row per zone."""
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, fieldnames=list(asdict(zones[0])))
+        table.writeheader()
+        table.writerows(asdict(row) for row in zones)
+
+
+def _slug(name: str) -> str:
+    """Make a file name of a name."""
+    return "".join(c if c.isalnum() else "-" for c in name.lower()).strip("-")
