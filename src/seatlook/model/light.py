@@ -208,9 +208,9 @@ def named_view(
 # azimuth, elevation [deg], share of the viewing distance
 VIEWS: MappingProxyType[str, tuple[float, float, float]] = MappingProxyType(
     {
-        "driver_door": (75.0, 38.0, 1.6),
-        "front_34": (35.0, 40.0, 1.6),
-        "top": (0.0, 90.0, 1.8),
+        "driver_door": (75.0, 38.0, 1.75),
+        "front_34": (35.0, 40.0, 1.9),
+        "top": (0.0, 90.0, 2.0),
         "detail": (35.0, 45.0, 0.6),
     }
 )

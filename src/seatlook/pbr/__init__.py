@@ -1,0 +1,43 @@
+"""Physically based pictures of a solved cover, and maps of values on it.
+
+Public names load on first use: VTK and Numba stay out of ``import seatlook``.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+__all__ = [
+    "Image",
+    "Picture",
+    "Studio",
+    "ev100",
+    "illuminance",
+    "lux_at_seat",
+    "offscreen_backend",
+    "render",
+    "render_map",
+]
+
+_PUBLIC: dict[str, str] = {
+    "Image": "seatlook.pbr.picture",
+    "Picture": "seatlook.pbr.picture",
+    "Studio": "seatlook.pbr.studio",
+    "ev100": "seatlook.pbr.exposure",
+    "illuminance": "seatlook.pbr.rig",
+    "lux_at_seat": "seatlook.pbr.rig",
+    "offscreen_backend": "seatlook.pbr.backend",
+    "render": "seatlook.pbr.studio",
+    "render_map": "seatlook.pbr.maps",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _PUBLIC:
+        return getattr(importlib.import_module(_PUBLIC[name]), name)
+    raise AttributeError(f"module 'seatlook.pbr' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *_PUBLIC]

@@ -1,0 +1,199 @@
+"""The fence: the only file that imports VTK. It tells which triangle each sample sees.
+
+Nothing is shaded here. One shader writes the number of the triangle into a float32 framebuffer;
+position, normal and light follow from it in ``kernels``, in double precision and with one BRDF.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import numpy.typing as npt
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonCore import (
+    VTK_FLOAT,
+    vtkCommand,
+    vtkLogger,
+    vtkObject,
+    vtkOutputWindow,
+    vtkPoints,
+    vtkStringOutputWindow,
+)
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer, vtkRenderWindow
+from vtkmodules.vtkRenderingOpenGL2 import (
+    vtkCameraPass,
+    vtkFramebufferPass,
+    vtkOpaquePass,
+    vtkOpenGLPolyDataMapper,
+    vtkRenderPassCollection,
+    vtkSequencePass,
+    vtkTextureObject,
+)
+
+from seatlook.errors import RenderError
+from seatlook.model import Camera, FloatArray, IntArray
+from seatlook.pbr.backend import offscreen_backend
+
+FaceIds = npt.NDArray[np.int32]
+
+# A float32 holds every integer up to this one.
+MAX_FACES = 2**24 - 1
+
+_WRITE_FACE = """
+//VTK::Light::Impl
+  gl_FragData[0] = vec4(float(gl_PrimitiveID + PrimitiveIDOffset + 1), 0.0, 0.0, 1.0);
+"""
+
+
+class FaceWindow:
+    """One offscreen window that stays open, with one mesh in it.
+
+    Raises
+    ------
+    RenderError
+        On any error VTK reports, such as a shader that does not compile.
+    """
+
+    def __init__(self) -> None:
+        offscreen_backend()
+        self._mesh: tuple[FloatArray, IntArray] | None = None
+        self._mapper = vtkOpenGLPolyDataMapper()
+        self._actor = vtkActor()
+        self._actor.SetMapper(self._mapper)
+        self._actor.GetShaderProperty().AddFragmentShaderReplacement(
+            "//VTK::Light::Impl", True, _WRITE_FACE, False
+        )
+        self._renderer = vtkRenderer()
+        self._renderer.AddActor(self._actor)
+        self._renderer.SetBackground(0.0, 0.0, 0.0)
+        self._renderer.SetBackgroundAlpha(0.0)
+        self._pass = _float_pass()
+        self._renderer.SetPass(self._pass)
+        self._window = vtkRenderWindow()
+        self._window.SetOffScreenRendering(True)
+        self._window.SetMultiSamples(0)
+        self._window.AddRenderer(self._renderer)
+
+    def faces(
+        self, vertices: FloatArray, faces: IntArray, camera: Camera, size: tuple[int, int]
+    ) -> FaceIds:
+        """Return the number of the nearest face at every sample centre, -1 where there is none.
+
+        Parameters
+        ----------
+        vertices : (n, 3) float64 [m]; faces : (m, 3) int64
+        size : (width, height) in samples; the camera's own size sets only the aspect
+
+        Returns
+        -------
+        (height, width) int32, first row at the top
+        """
+        self._set_mesh(vertices, faces)
+        self._aim(camera, size)
+        with _errors_raised():
+            self._window.Render()
+        picture = self._read(size)
+        ids = np.rint(picture[::-1, :, 0]).astype(np.int32) - 1
+        drawn = picture[::-1, :, 3] > 0
+        if (drawn != (ids >= 0)).any() or ids.max(initial=-1) >= len(faces):
+            raise RenderError("the face shader did not run: the frame holds no face numbers")
+        return ids
+
+    def describe(self) -> str:
+        """Return window class and GL renderer, for ``seatlook doctor``."""
+        with _errors_raised():
+            self._window.Render()
+        lines = self._window.ReportCapabilities().splitlines()
+        named = [line.strip() for line in lines if line.startswith("OpenGL renderer")]
+        return ", ".join([self._window.GetClassName(), *named])
+
+    def _set_mesh(self, vertices: FloatArray, faces: IntArray) -> None:
+        if self._mesh is not None and self._mesh[0] is vertices and self._mesh[1] is faces:
+            return
+        if len(faces) > MAX_FACES:
+            raise RenderError(f"{len(faces)} triangles are more than {MAX_FACES}")
+        points = vtkPoints()
+        points.SetDataTypeToDouble()
+        points.SetData(numpy_to_vtk(np.ascontiguousarray(vertices), deep=True))
+        cells = vtkCellArray()
+        offsets = np.arange(0, 3 * len(faces) + 1, 3, dtype=np.int64)
+        cells.SetData(
+            numpy_to_vtkIdTypeArray(offsets, deep=True),
+            numpy_to_vtkIdTypeArray(np.ascontiguousarray(faces).ravel(), deep=True),
+        )
+        data = vtkPolyData()
+        data.SetPoints(points)
+        data.SetPolys(cells)
+        self._mapper.SetInputData(data)
+        self._mesh = (vertices, faces)
+
+    def _aim(self, camera: Camera, size: tuple[int, int]) -> None:
+        eye = self._renderer.GetActiveCamera()
+        eye.ParallelProjectionOff()
+        eye.SetPosition(*camera.position)
+        eye.SetFocalPoint(*camera.target)
+        eye.SetViewUp(*camera.up)
+        eye.SetViewAngle(camera.vertical_fov_deg)
+        self._window.SetSize(*size)
+        self._renderer.ResetCameraClippingRange()
+
+    def _read(self, size: tuple[int, int]) -> npt.NDArray[np.float32]:
+        width, height = size
+        texture = self._pass.GetColorTexture()
+        if texture is None or (texture.GetWidth(), texture.GetHeight()) != size:
+            raise RenderError(f"the GL library did not give a frame of {width} x {height} samples")
+        buffer = texture.Download()
+        picture = np.empty((height, width, 4), dtype=np.float32)
+        if not buffer.Download2D(VTK_FLOAT, picture, [width, height], 4, [0, 0]):
+            raise RenderError("the frame could not be read back from the GL library")
+        return picture
+
+
+@functools.cache
+def face_window() -> FaceWindow:
+    """Return the one window of this process."""
+    with _errors_raised():
+        return FaceWindow()
+
+
+def _float_pass() -> vtkFramebufferPass:
+    """Pass that keeps its colours as float32 and draws opaque triangles only."""
+    steps = vtkRenderPassCollection()
+    steps.AddItem(vtkOpaquePass())
+    sequence = vtkSequencePass()
+    sequence.SetPasses(steps)
+    camera = vtkCameraPass()
+    camera.SetDelegatePass(sequence)
+    framebuffer = vtkFramebufferPass()
+    framebuffer.SetDelegatePass(camera)
+    framebuffer.SetColorFormat(vtkTextureObject.Float32)
+    return framebuffer
+
+
+@contextmanager
+def _errors_raised() -> Iterator[None]:
+    """Turn what VTK writes to its output window, and otherwise forgets, into a RenderError."""
+    errors: list[str] = []
+
+    def collect(_source: vtkObject, _event: str, text: str) -> None:
+        errors.append(" ".join(text.split())[:500])
+
+    # VTK reads from this attribute that the text of the event is wanted.
+    collect.CallDataType = "string0"  # type: ignore[attr-defined]
+    listening = vtkStringOutputWindow()
+    listening.AddObserver(vtkCommand.ErrorEvent, collect)
+    before = vtkOutputWindow.GetInstance()
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkOutputWindow.SetInstance(listening)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield
+    finally:
+        vtkOutputWindow.SetInstance(before)
+        vtkLogger.SetStderrVerbosity(verbosity)
+    if errors:
+        raise RenderError("VTK reported: " + "; ".join(dict.fromkeys(errors)))

@@ -1,0 +1,192 @@
+"""Pictures of values on the cover: perceptually even colours, a bar with units, the same camera."""
+
+from __future__ import annotations
+
+import matplotlib
+import numpy as np
+import numpy.typing as npt
+from PIL import Image as Pillow
+from PIL import ImageDraw, ImageFont
+
+from seatlook.errors import InputError, did_you_mean
+from seatlook.model import Camera, FloatArray, Solution
+from seatlook.pbr.exposure import srgb_encode
+from seatlook.pbr.kernels import surface as kernel
+from seatlook.pbr.picture import Picture
+from seatlook.pbr.studio import eye_of, studio
+
+_FACTOR = 2
+_PAPER, _INK, _BARE = 250, (30, 30, 30), 205
+_SEQUENTIAL = ("viridis", "cividis", "magma")
+COLORMAPS = ("diverging", *_SEQUENTIAL)
+
+
+def render_map(
+    solution: Solution,
+    values: FloatArray,
+    *,
+    camera: Camera,
+    title: str,
+    unit: str = "",
+    value_range: tuple[float, float] | None = None,
+    colormap: str | None = None,
+    smooth: bool = False,
+) -> Picture:
+    """Draw one value per face with a colour bar.
+
+    Parameters
+    ----------
+    values : (m,) float64           nan is drawn grey
+    value_range : (low, high)       None: the 99th percentile of |values|, from 0, or from its
+        negative for the diverging map; what lies outside takes the colour of the end
+    colormap : ``viridis``, ``cividis``, ``magma``, or ``diverging`` (white at the middle); None:
+        diverging where the range holds 0 inside, else viridis
+    smooth : blend over the vertices of each panel instead of one colour per element
+
+    Returns
+    -------
+    Picture
+        Display-referred; shade from above makes the shape readable and leaves hue and order of
+        the colours alone.
+
+    Raises
+    ------
+    InputError
+        Wrong number of values, an empty range, an unknown colour map.
+    NoOffscreenContext, RenderError
+    """
+    faces = solution.cover.faces
+    if values.shape != (len(faces),):
+        raise InputError.single("values", got=f"shape {values.shape}", expected=f"({len(faces)},)")
+    if colormap is None:
+        inside = value_range is not None and value_range[0] < 0 < value_range[1]
+        colormap = "diverging" if inside else "viridis"
+    low, high = _range(values, value_range, colormap)
+    stage = studio(solution)
+    ids = stage.faces(camera, _FACTOR)
+    corner = _corner_values(values, solution, smooth=smooth)
+    value, cosine = _sampled(stage.surface.mesh, ids, camera, corner, stage.surface.faces)
+    table = _table(colormap)
+    position = np.clip((value - low) / (high - low), 0.0, 1.0) * (len(table) - 1)
+    flat = table[np.rint(np.nan_to_num(position)).astype(np.int64)]
+    flat[np.isnan(value)] = (_BARE / 255) ** 2.2
+    colour = flat * (0.62 + 0.38 * cosine[..., None])
+    colour[ids < 0] = (_PAPER / 255) ** 2.2
+    width, height = camera.size
+    mean = colour.reshape(height, _FACTOR, width, _FACTOR, 3).mean(axis=(1, 3))
+    pixels = np.rint(255 * srgb_encode(np.clip(mean, 0, 1))).astype(np.uint8)
+    return Picture(
+        pixels=_with_bar(pixels, table, (low, high), title, unit), value_range=(low, high)
+    )
+
+
+def _range(
+    values: FloatArray, value_range: tuple[float, float] | None, colormap: str
+) -> tuple[float, float]:
+    if colormap not in COLORMAPS:
+        raise InputError.single(
+            "colormap",
+            got=repr(colormap),
+            expected=f"one of {', '.join(COLORMAPS)}",
+            hint=did_you_mean(colormap, COLORMAPS),
+        )
+    if value_range is None:
+        finite = np.abs(values[np.isfinite(values)])
+        high = float(np.percentile(finite, 99)) if finite.size else 0.0
+        high = high or 1.0
+        value_range = (-high if colormap == "diverging" else 0.0, high)
+    low, high = value_range
+    if not high > low:
+        raise InputError.single("value_range", got=value_range, expected="low < high")
+    return low, high
+
+
+def _corner_values(values: FloatArray, solution: Solution, *, smooth: bool) -> FloatArray:
+    """Values (m, 3) at the corners of the solver's faces."""
+    if not smooth:
+        return np.repeat(values[:, None], 3, axis=1)
+    faces, area = solution.cover.faces, solution.cover.rest_area
+    known = np.where(np.isfinite(values), area, 0.0)
+    n = len(solution.positions)
+    weight = np.bincount(faces.ravel(), np.repeat(known, 3), minlength=n)
+    total = np.bincount(faces.ravel(), np.repeat(known * np.nan_to_num(values), 3), minlength=n)
+    with np.errstate(invalid="ignore"):
+        return np.asarray((total / weight)[faces])
+
+
+def _sampled(
+    mesh: kernel.Mesh,
+    ids: npt.NDArray[np.int32],
+    camera: Camera,
+    corner: FloatArray,
+    cover_faces: int,
+) -> tuple[FloatArray, FloatArray]:
+    """Value at each sample (nan off the cover) and cosine of its normal to the view."""
+    value = np.full(ids.shape, np.nan)
+    cosine = np.ones(ids.shape)
+    kernel.paint(mesh, eye_of(camera, _FACTOR), ids, corner, cover_faces, value, cosine)
+    return value, cosine
+
+
+def _table(colormap: str) -> FloatArray:
+    """Colours (256, 3) in linear sRGB, from low to high."""
+    if colormap != "diverging":
+        srgb = matplotlib.colormaps[colormap](np.linspace(0, 1, 256))[:, :3]
+        linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+        return np.asarray(linear)
+    return _diverging(np.linspace(-1, 1, 256))
+
+
+def _diverging(x: FloatArray) -> FloatArray:
+    """Blue, near white, brown-red: lightness falls evenly from the middle, in Oklab (2020)."""
+    t = np.abs(x)
+    lightness = 0.97 - 0.60 * t
+    chroma = 0.15 * np.sin(0.5 * np.pi * np.minimum(1.0, 1.25 * t))
+    hue = np.where(x < 0, np.radians(255.0), np.radians(38.0))
+    a, b = chroma * np.cos(hue), chroma * np.sin(hue)
+    to_lms = np.array(
+        [
+            [1.0, 0.3963377774, 0.2158037573],
+            [1.0, -0.1055613458, -0.0638541728],
+            [1.0, -0.0894841775, -1.2914855480],
+        ]
+    )
+    to_rgb = np.array(
+        [
+            [4.0767416621, -3.3077115913, 0.2309699292],
+            [-1.2684380046, 2.6097574011, -0.3413193965],
+            [-0.0041960863, -0.7034186147, 1.7076147010],
+        ]
+    )
+    lms = (np.stack([lightness, a, b], axis=-1) @ to_lms.T) ** 3
+    return np.asarray(np.clip(lms @ to_rgb.T, 0.0, 1.0))
+
+
+def _with_bar(
+    pixels: npt.NDArray[np.uint8],
+    table: FloatArray,
+    value_range: tuple[float, float],
+    title: str,
+    unit: str,
+) -> npt.NDArray[np.uint8]:
+    """Title at the top left, colour bar with five ticks along the right."""
+    height, width = pixels.shape[:2]
+    picture = Pillow.fromarray(pixels)
+    draw = ImageDraw.Draw(picture)
+    size = max(9, height // 36)
+    font = ImageFont.load_default(size)
+    draw.text((size, size // 2), title, fill=_INK, font=font)
+    top, bottom = height // 5, height - height // 5
+    left = width - 6 * size
+    bar = np.rint(255 * srgb_encode(table)).astype(np.uint8)
+    rows = np.linspace(len(bar) - 1, 0, bottom - top).astype(np.int64)
+    picture.paste(Pillow.fromarray(np.repeat(bar[rows][:, None], size, axis=1)), (left, top))
+    draw.rectangle((left - 1, top - 1, left + size, bottom), outline=_INK)
+    low, high = value_range
+    for k in range(5):
+        y = bottom - (bottom - top) * k // 4
+        draw.line((left + size, y, left + size + size // 3, y), fill=_INK)
+        text = f"{low + (high - low) * k / 4:.3g}"
+        draw.text((left + size + size // 2, y), text, fill=_INK, font=font, anchor="lm")
+    draw.text((left, top - size), unit or "[-]", fill=_INK, font=font, anchor="lm")
+    return np.asarray(picture)

@@ -1,0 +1,102 @@
+"""Pictures: scene-linear radiance with its exposure, and display-ready maps."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image as Pillow
+
+from seatlook.errors import InputError
+from seatlook.files import write_bytes
+from seatlook.model import Camera, FloatArray
+from seatlook.pbr.exposure import Radiance, to_display
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Image:
+    """A rendered picture.
+
+    Parameters
+    ----------
+    radiance : (h, w, 3) float32 [cd/m2]   scene-linear sRGB primaries, first row at the top
+    ev100 : exposure value of the rig
+    lux : light name -> lux on the grey card at the seat, with ``total``
+    white : (3,) float64, luminance 1      colour that the display shows neutral
+    tone : name of the tone curve
+    cover : (h, w) float32 in [0, 1]       share of the pixel that shows the cover
+    """
+
+    radiance: Radiance
+    ev100: float
+    lux: MappingProxyType[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    white: FloatArray = field(default_factory=lambda: np.ones(3))
+    tone: str = "clamp"
+    camera: Camera | None = None
+    cover: npt.NDArray[np.float32] | None = None
+
+    def to_srgb(self) -> npt.NDArray[np.uint8]:
+        """Eight-bit sRGB (h, w, 3) at this exposure."""
+        return to_display(self.radiance, self.ev100, white=self.white, tone=self.tone)
+
+    def to_png(self) -> bytes:
+        """PNG file content."""
+        return png(self.to_srgb())
+
+    def save(self, path: Path) -> None:
+        """Write ``.png`` (display) or ``.npy`` (radiance).
+
+        Raises
+        ------
+        InputError
+            Another file ending.
+        """
+        if path.suffix == ".png":
+            write_bytes(path, self.to_png())
+        elif path.suffix == ".npy":
+            buffer = io.BytesIO()
+            np.save(buffer, self.radiance, allow_pickle=False)
+            write_bytes(path, buffer.getvalue())
+        else:
+            raise InputError.single("image file", got=path.name, expected="a .png or .npy name")
+
+    def _repr_png_(self) -> bytes:
+        return self.to_png()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """A display-ready picture: ``pixels`` (h, w, 3) uint8 sRGB, and the range of its colours."""
+
+    pixels: npt.NDArray[np.uint8]
+    value_range: tuple[float, float]
+
+    def to_png(self) -> bytes:
+        """PNG file content."""
+        return png(self.pixels)
+
+    def save(self, path: Path) -> None:
+        """Write a ``.png`` file.
+
+        Raises
+        ------
+        InputError
+            Another file ending.
+        """
+        if path.suffix != ".png":
+            raise InputError.single("picture file", got=path.name, expected="a .png name")
+        write_bytes(path, self.to_png())
+
+    def _repr_png_(self) -> bytes:
+        return self.to_png()
+
+
+def png(pixels: npt.NDArray[np.uint8]) -> bytes:
+    """PNG content of (h, w, 3) uint8 sRGB pixels, the same bytes for the same pixels."""
+    buffer = io.BytesIO()
+    Pillow.fromarray(pixels).save(buffer, format="PNG", compress_level=6)
+    return buffer.getvalue()

@@ -1,0 +1,347 @@
+"""Rendering: what is cached between pictures, and the order in which a picture is made."""
+
+from __future__ import annotations
+
+import functools
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from seatlook.errors import InputError, RenderError, did_you_mean
+from seatlook.model import Appearance, Camera, FloatArray, Light, Rig, Solution
+from seatlook.pbr.exposure import ev100
+from seatlook.pbr.kernels import bvh, rays, shade, surface, tables
+from seatlook.pbr.kernels.brdf import MATERIAL
+from seatlook.pbr.picture import Image
+from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, white_of
+from seatlook.pbr.surface import FOAM, Surface, drawn_surface
+from seatlook.pbr.tables import load_tables
+from seatlook.pbr.texture import load_textures, texture_index
+
+Looks = Appearance | Mapping[str, Appearance] | None
+
+# A grey card of 18 % fills the background.
+_CARD = 0.18
+# Foam in front of the cover by less than this [m] is foam the cover has compressed.
+_COMPRESSED = 0.08
+# How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
+_OCCLUDER = 0.04
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Quality:
+    """How much is spent on a picture.
+
+    Parameters
+    ----------
+    factor : samples per pixel and axis
+    rays : shadow rays per sample where a shadow has its edge
+    strata : the half-space is seen along strata^2 rays per vertex; 0 leaves it all open
+    bounces : how often light may go from cover to cover
+    """
+
+    factor: int
+    rays: int
+    strata: int
+    bounces: int
+
+
+QUALITIES: dict[str, Quality] = {
+    "draft": Quality(factor=1, rays=1, strata=0, bounces=0),
+    "standard": Quality(factor=2, rays=4, strata=8, bounces=1),
+    "high": Quality(factor=4, rays=4, strata=16, bounces=3),
+}
+
+
+class Studio:
+    """One solved cover ready to be drawn, with everything that pictures share.
+
+    Faces seen are kept per camera, shadows per camera and light, open sky per mesh: another
+    material costs only its shading, another light only its shadows.
+    """
+
+    def __init__(self, solution: Solution) -> None:
+        self.solution = solution
+        self.surface: Surface = drawn_surface(solution)
+        self._bvh = bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
+        self._cache: OrderedDict[Hashable, Any] = OrderedDict()
+
+    def render(
+        self, appearance: Looks = None, *, rig: Rig, camera: Camera, quality: str = "standard"
+    ) -> Image:
+        """Draw the cover; see :func:`render`."""
+        level = _quality(quality)
+        materials = self._materials(appearance)
+        couplings = np.empty((len(materials), len(load_tables().scale_mean)))
+        tables.coupling(load_tables(), materials, couplings)
+        ids = self.faces(camera, level.factor)
+        lights = pack_lights(rig)
+        seen = self._visibility(rig, camera, level, ids)
+        width, height = camera.size
+        ev = ev100(rig)
+        radiance = np.zeros((height, width, 3))
+        shade.shade(
+            self.surface.mesh,
+            eye_of(camera, level.factor),
+            ids,
+            materials,
+            couplings,
+            load_tables(),
+            load_textures(),
+            lights,
+            self._around(rig, materials, level),
+            seen,
+            level.factor,
+            radiance,
+        )
+        _check(radiance, ids, seen, camera)
+        share = (ids >= 0).reshape(height, level.factor, width, level.factor).mean(axis=(1, 3))
+        radiance += (1 - share[..., None]) * _CARD * 2.5 * 2.0**ev / np.pi * white_of(rig)
+        cover = (ids >= 0) & (ids < self.surface.faces)
+        cover_share = cover.reshape(height, level.factor, width, level.factor).mean(axis=(1, 3))
+        return Image(
+            radiance=radiance.astype(np.float32),
+            ev100=ev,
+            lux=MappingProxyType(lux_at_seat(rig)),
+            white=white_of(rig),
+            camera=camera,
+            cover=cover_share.astype(np.float32),
+        )
+
+    def faces(self, camera: Camera, factor: int = 1) -> npt.NDArray[np.int32]:
+        """Face of the drawn mesh seen by each sample, (h factor, w factor), -1 for none.
+
+        Raises
+        ------
+        RenderError
+            Nothing is in the picture.
+        """
+        key = ("faces", _key(camera), factor)
+        return np.asarray(self._kept(key, lambda: self._draw(camera, factor)))
+
+    def _draw(self, camera: Camera, factor: int) -> npt.NDArray[np.int32]:
+        from seatlook.pbr._vtk import face_window
+
+        mesh, m = self.surface.mesh, self.surface.faces
+        size = (camera.size[0] * factor, camera.size[1] * factor)
+        window, eye = face_window(), eye_of(camera, factor)
+        ids = window.faces(mesh.vertices, mesh.faces[:m], camera, size)
+        if len(mesh.faces) > m:
+            foam = window.faces(mesh.vertices, mesh.faces[m:], camera, size)
+            foam = np.where(foam >= 0, foam + np.int32(m), foam)
+            cover_far, foam_far = np.empty(ids.shape), np.empty(ids.shape)
+            front = surface.distances(mesh, eye, ids, cover_far)
+            surface.distances(mesh, eye, foam, foam_far)
+            # The stored foam is at rest: where the cover presses on it, it would stick out.
+            pressed = np.where(front, _COMPRESSED, 0.0)
+            ids = np.where(foam_far < cover_far - pressed, foam, ids)
+        if not (ids >= 0).any():
+            raise RenderError(f"camera {camera.name}: nothing is in the picture")
+        return ids
+
+    def _visibility(
+        self, rig: Rig, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
+    ) -> npt.NDArray[np.uint8]:
+        """Share of each light [1/255] seen by each sample, (lights, h, w)."""
+        stack = np.empty((len(rig.lights), *ids.shape), dtype=np.uint8)
+        for k, light in enumerate(rig.lights):
+            key = ("shadow", _key(camera), level.factor, level.rays, _light_key(light))
+            make = functools.partial(self._shadow, rig, k, camera, level, ids)
+            stack[k] = self._kept(key, make)
+        return stack
+
+    def _shadow(
+        self, rig: Rig, k: int, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
+    ) -> npt.NDArray[np.uint8]:
+        share = np.ones(ids.shape)
+        rays.shadows(
+            self._bvh,
+            self.surface.mesh,
+            eye_of(camera, level.factor),
+            ids,
+            pack_lights(rig),
+            np.array([light.size for light in rig.lights]),
+            k,
+            level.factor,
+            level.rays,
+            _edge_width(rig.lights[k], camera),
+            share,
+        )
+        return np.rint(255 * share).astype(np.uint8)
+
+    def _around(self, rig: Rig, materials: np.ndarray, level: Quality) -> shade.Around:
+        """Sky and bounced light at every vertex, found at the solver's vertices."""
+        n, k = len(self.surface.mesh.vertices), self.surface.vertices
+        colour = sky_colour(rig)
+        sky, sent = np.tile(rig.ambient * colour, (n, 1)), np.zeros((n, 3))
+        if level.strata == 0:
+            return shade.Around(sky, sent)
+        mesh = self.surface.coarse
+        hits = self._kept(("hits", level.strata), lambda: self._hits(level.strata))
+        few_sky = (hits == -1).mean(axis=1)[:, None] * rig.ambient * colour
+        direct, few = np.empty(few_sky.shape), np.zeros(few_sky.shape)
+        sizes = np.array([light.size for light in rig.lights])
+        rays.irradiance(self._bvh, mesh, pack_lights(rig), sizes, direct)
+        albedo = np.ascontiguousarray(materials["albedo"])
+        for _ in range(level.bounces):
+            rays.bounce(mesh, hits, albedo, direct + np.pi * (few_sky + few), few)
+        sky[:k] = self.surface.refined.spread(few_sky)
+        sent[:k] = self.surface.refined.spread(few)
+        return shade.Around(sky, sent)
+
+    def _hits(self, strata: int) -> npt.NDArray[np.int32]:
+        """Solver's face that each vertex sees along each direction."""
+        mesh = self.surface.coarse
+        hits = np.empty((len(mesh.vertices), strata * strata), dtype=np.int32)
+        rays.gather(self._bvh, mesh, strata, hits)
+        children = self.surface.faces // len(mesh.faces)
+        return np.where(hits >= 0, hits // children, hits)
+
+    def _materials(self, appearance: Looks) -> np.ndarray:
+        cover = self.solution.cover
+        own = {n: m.appearance for n, m in zip(cover.panel_names, cover.materials, strict=True)}
+        if isinstance(appearance, Appearance):
+            own = dict.fromkeys(own, appearance)
+        elif appearance is not None:
+            unknown = sorted(set(appearance) - set(own))
+            if unknown:
+                raise InputError.single(
+                    "appearance",
+                    got=f"panel {unknown[0]!r}",
+                    expected=f"one of {', '.join(own)}",
+                    hint=did_you_mean(unknown[0], own),
+                )
+            own |= appearance
+        return pack_materials([*own.values(), FOAM])
+
+    def _kept(self, key: Hashable, make: Callable[[], Any]) -> Any:
+        """Return the cached value of ``key``; the oldest of more than 24 is dropped."""
+        if key not in self._cache:
+            self._cache[key] = make()
+            if len(self._cache) > 24:
+                self._cache.popitem(last=False)
+        self._cache.move_to_end(key)
+        return self._cache[key]
+
+
+def render(
+    solution: Solution,
+    appearance: Looks = None,
+    *,
+    rig: Rig,
+    camera: Camera,
+    quality: str = "standard",
+) -> Image:
+    """Draw a solved cover under a rig.
+
+    Parameters
+    ----------
+    appearance : None for the panels' own materials, one Appearance for all panels, or a mapping
+        from panel name to Appearance; panels not named keep their own
+    quality : ``draft`` (hard shadows, no smoothing), ``standard`` (2 x 2 samples, soft shadows,
+        covered sky, one bounce) or ``high`` (4 x 4, three bounces)
+
+    Returns
+    -------
+    Image
+        Radiance [cd/m2] and the rig's exposure, which does not depend on anything drawn.
+
+    Raises
+    ------
+    NoOffscreenContext, RenderError, InputError
+
+    Notes
+    -----
+    A studio is kept for the two solutions drawn last; make your own :class:`Studio` to decide.
+    """
+    return studio(solution).render(appearance, rig=rig, camera=camera, quality=quality)
+
+
+_studios: OrderedDict[int, Studio] = OrderedDict()
+
+
+def studio(solution: Solution) -> Studio:
+    """Return the studio of a solution, making it where it is not among the last two."""
+    key = id(solution)
+    if key not in _studios:
+        _studios[key] = Studio(solution)
+        if len(_studios) > 2:
+            _studios.popitem(last=False)
+    _studios.move_to_end(key)
+    return _studios[key]
+
+
+def pack_materials(appearances: list[Appearance]) -> np.ndarray:
+    """Records (p,) of the kernels' material type."""
+    out = np.zeros(len(appearances), dtype=MATERIAL)
+    for record, a in zip(out, appearances, strict=True):
+        for name in MATERIAL.names or ():
+            record[name] = texture_index(a) if name == "texture" else getattr(a, name)
+    return out
+
+
+def eye_of(camera: Camera, factor: int) -> surface.Eye:
+    """Rays through the centres of ``factor`` x ``factor`` samples per pixel.
+
+    Raises
+    ------
+    InputError
+        The camera sits on its target or looks along its up vector.
+    """
+    forward = camera.target - camera.position
+    right = np.cross(forward, camera.up)
+    if np.linalg.norm(right) <= 1e-9 * np.linalg.norm(camera.up) * np.linalg.norm(forward):
+        raise InputError.single(
+            f"camera {camera.name}",
+            got=f"position {camera.position.tolist()}, up {camera.up.tolist()}",
+            expected="a target away from the position and an up vector across the view",
+        )
+    forward = forward / np.linalg.norm(forward)
+    right = right / np.linalg.norm(right)
+    down = -np.cross(right, forward)
+    width, height = camera.size[0] * factor, camera.size[1] * factor
+    step = 2 * np.tan(np.radians(camera.vertical_fov_deg) / 2) / height
+    first = forward - 0.5 * (width - 1) * step * right - 0.5 * (height - 1) * step * down
+    return surface.Eye(np.array(camera.position), first, step * right, step * down)
+
+
+def _quality(name: str) -> Quality:
+    if name not in QUALITIES:
+        raise InputError.single(
+            "quality",
+            got=repr(name),
+            expected=f"one of {', '.join(QUALITIES)}",
+            hint=did_you_mean(name, QUALITIES),
+        )
+    return QUALITIES[name]
+
+
+def _check(radiance: FloatArray, ids: np.ndarray, seen: np.ndarray, camera: Camera) -> None:
+    if not np.isfinite(radiance).all():
+        raise RenderError(f"camera {camera.name}: the picture holds values that are not finite")
+    if seen.size and (seen[:, ids >= 0] > 0).any() and radiance.max() <= 0:
+        raise RenderError(f"camera {camera.name}: the picture is black though a light reaches it")
+
+
+def _edge_width(light: Light, camera: Camera) -> int:
+    """Pixels over which the edge of a light's shadow may spread."""
+    distance = float(np.linalg.norm(camera.target - camera.position))
+    pixel = distance * 2 * np.tan(np.radians(camera.vertical_fov_deg) / 2) / camera.size[1]
+    half = light.size / 2
+    if light.near:
+        half = light.size / max(float(np.linalg.norm(light.vector - camera.target)), 1e-6)
+    return int(np.clip(np.ceil(np.tan(min(half, 1.0)) * _OCCLUDER / pixel), 1, 8))
+
+
+def _key(camera: Camera) -> Hashable:
+    vectors = np.concatenate([camera.position, camera.target, camera.up]).tobytes()
+    return (vectors, camera.vertical_fov_deg, camera.size)
+
+
+def _light_key(light: Light) -> Hashable:
+    return (light.near, light.vector.tobytes(), light.size)

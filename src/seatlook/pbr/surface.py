@@ -1,0 +1,139 @@
+"""The surface that is drawn: the solved panels refined and smooth, and the foam below them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatlook.errors import RenderError
+from seatlook.model import Appearance, FloatArray, Foam, IntArray, Solution
+from seatlook.pbr.kernels.surface import Mesh
+from seatlook.pbr.subdivision import Refined, sharp_corners, subdivide
+
+# Refinement stops below this edge length [m], about a pixel of the named views, or at this size.
+_FINE = 0.0012
+_MOST_FACES = 500_000
+
+# Open-cell polyether, cream; judgement.
+FOAM = Appearance(albedo=np.array([0.62, 0.57, 0.42]), roughness=0.95, f0=0.02)
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """What is drawn.
+
+    Parameters
+    ----------
+    mesh : Mesh           cover first, then foam; the foam's ``panel`` is one past the last panel
+    refined : Refined     how the cover's vertices come from the solved ones
+    vertices, faces : int how many of the mesh's belong to the cover
+    coarse_faces : (m, 3) the solver's faces
+    """
+
+    mesh: Mesh
+    refined: Refined
+    vertices: int
+    faces: int
+    coarse_faces: IntArray
+
+    @property
+    def coarse(self) -> Mesh:
+        """The cover on the solver's own vertices and faces, with the refined normals."""
+        n = len(self.refined.points) - sum(map(len, self.refined.parents))
+        m, step = self.mesh, 4 ** len(self.refined.parents)
+        return Mesh(
+            m.vertices[:n],
+            m.normals[:n],
+            m.warp[:n],
+            m.uv[:n],
+            self.coarse_faces,
+            np.ascontiguousarray(m.panel[: self.faces : step]),
+        )
+
+    @property
+    def cover_mesh(self) -> Mesh:
+        """Only the cover; foam that it compresses is not in the way of light."""
+        m = self.mesh
+        return m._replace(faces=m.faces[: self.faces], panel=m.panel[: self.faces])
+
+
+def drawn_surface(solution: Solution) -> Surface:
+    """Refine the solved cover until its elements do not show, and add the foam.
+
+    Raises
+    ------
+    RenderError
+        The cover has no faces, or a face without area.
+    """
+    cover = solution.cover
+    if len(cover.faces) == 0:
+        raise RenderError("the cover has no faces to draw")
+    levels = _levels(cover.element_size, len(cover.faces))
+    refined = subdivide(
+        np.hstack([solution.positions, cover.uv]),
+        cover.faces,
+        levels=levels,
+        corners=sharp_corners(cover.rest, cover.faces),
+    )
+    x = np.ascontiguousarray(refined.points[:, :3])
+    uv = np.ascontiguousarray(refined.points[:, 3:])
+    panel = np.repeat(cover.panel, 4**levels)
+    normals = vertex_normals(x, refined.faces)
+    mesh = Mesh(x, normals, _warp(x, uv, refined.faces), uv, refined.faces, panel)
+    n, m = len(x), len(refined.faces)
+    if cover.foam is not None:
+        mesh = _with_foam(mesh, cover.foam, len(cover.panel_names))
+    return Surface(mesh, refined, n, m, np.array(cover.faces))
+
+
+def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
+    """Area-weighted unit normals (n, 3); vertices without a face get z.
+
+    Panels share no vertices, so their seams stay creases.
+    """
+    a, b, c = (x[faces[:, k]] for k in range(3))
+    n = _sum_to_vertices(np.cross(b - a, c - a), faces, len(x))
+    length = np.linalg.norm(n, axis=1, keepdims=True)
+    lost = length[:, 0] == 0
+    n[lost] = (0.0, 0.0, 1.0)
+    length[lost] = 1.0
+    return np.ascontiguousarray(n / length)
+
+
+def _levels(element_size: float, faces: int) -> int:
+    levels = 0
+    while element_size / 2**levels > _FINE and faces * 4 ** (levels + 1) <= _MOST_FACES:
+        levels += 1
+    return levels
+
+
+def _warp(x: FloatArray, uv: FloatArray, faces: np.ndarray) -> FloatArray:
+    """Unit direction (n, 3) of the first pattern coordinate at the vertices."""
+    a, b, c = (x[faces[:, k]] for k in range(3))
+    p, q, r = (uv[faces[:, k]] for k in range(3))
+    # det times dx/du: as a sum over faces this weights each with its area.
+    along = (b - a) * (r - p)[:, 1:] - (c - a) * (q - p)[:, 1:]
+    warp = _sum_to_vertices(along, faces, len(x))
+    length = np.linalg.norm(warp, axis=1, keepdims=True)
+    return np.ascontiguousarray(warp / np.where(length > 0, length, 1.0))
+
+
+def _sum_to_vertices(values: FloatArray, faces: np.ndarray, n: int) -> FloatArray:
+    corner = faces.ravel()
+    repeated = np.repeat(values, 3, axis=0)
+    return np.column_stack([np.bincount(corner, repeated[:, k], minlength=n) for k in range(3)])
+
+
+def _with_foam(mesh: Mesh, foam: Foam, panel: int) -> Mesh:
+    n, k = len(mesh.vertices), len(foam.vertices)
+    x = np.array(foam.vertices)
+    faces = np.array(foam.faces)
+    return Mesh(
+        np.vstack([mesh.vertices, x]),
+        np.vstack([mesh.normals, vertex_normals(x, faces)]),
+        np.vstack([mesh.warp, np.zeros((k, 3))]),
+        np.vstack([mesh.uv, np.zeros((k, 2))]),
+        np.vstack([mesh.faces, faces + n]),
+        np.concatenate([mesh.panel, np.full(len(faces), panel)]),
+    )
