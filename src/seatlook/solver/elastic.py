@@ -5,14 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 from scipy.sparse import csc_array
 
 from seatlook.errors import InputError
 from seatlook.model import Fabric, FloatArray, IntArray
-from seatlook.solver.bending import Bending, curvature_operator
+from seatlook.solver.bending import Bending
+from seatlook.solver.curvature import Clamps, recover_curvature
 from seatlook.solver.edgeslope import areas, edges_of, slope_rows
 from seatlook.solver.energy import Energy
 from seatlook.solver.membrane import Membrane
+
+
+BoolArray = npt.NDArray[np.bool_]
 
 
 class ElasticSheet:
@@ -24,6 +29,8 @@ class ElasticSheet:
     faces : (m, 3) int64          counter-clockwise in ``rest``
     panel : (m,) int64            index into ``fabrics``
     fabrics : one Fabric for each panel
+    clamped : (n,) bool           a free edge between two clamped vertices keeps the direction
+        across it that its triangle has in ``positions``, (n, 3) [m], the flat sheet if not given
 
     Raises
     ------
@@ -32,7 +39,14 @@ class ElasticSheet:
     """
 
     def __init__(
-        self, rest: FloatArray, faces: IntArray, panel: IntArray, fabrics: Sequence[Fabric]
+        self,
+        rest: FloatArray,
+        faces: IntArray,
+        panel: IntArray,
+        fabrics: Sequence[Fabric],
+        *,
+        clamped: BoolArray | None = None,
+        positions: FloatArray | None = None,
     ) -> None:
         rest = np.array(rest, dtype=np.float64, order="C")
         faces = np.array(faces, dtype=np.int64, order="C")
@@ -54,7 +68,14 @@ class ElasticSheet:
         )
         stiffness = np.stack([f.bending_matrix for f in fabrics])[panel]
         rows = slope_rows(rest, faces, self.edges)
-        self._curvature = curvature_operator(len(rest), self.area, self.edges, rows, stiffness)
+        self._curvature = recover_curvature(
+            len(rest),
+            self.edges,
+            rows,
+            self.area,
+            stiffness,
+            self._clamps(rest, clamped, positions),
+        )
         self.membrane = Membrane(self.edges, self._curvature, self.area, panel, self._fabrics)
         self.bending = Bending(self.edges, self._curvature, self.area, stiffness)
 
@@ -71,7 +92,7 @@ class ElasticSheet:
 
     def curvatures(self, x: FloatArray) -> FloatArray:
         """Return kappa = -(n . x,ij) of every triangle, (m, 2, 2) [1/m]; a crown is positive."""
-        second = (self._curvature @ x).reshape(-1, 3, 3)
+        second = self._curvature.at(x)
         p = x[self.faces]
         normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
         normal /= np.linalg.norm(normal, axis=1)[:, None]
@@ -83,6 +104,19 @@ class ElasticSheet:
         mid = _tensors(self.membrane.strain(x))
         part = 0.5 * self._thickness[:, None, None] * self.curvatures(x)
         return mid + part, mid, mid - part
+
+    def _clamps(
+        self, rest: FloatArray, clamped: BoolArray | None, positions: FloatArray | None
+    ) -> Clamps | None:
+        """Free edges between clamped vertices, with the slope of their own plane triangle."""
+        if clamped is None:
+            return None
+        held = np.flatnonzero(self.edges.free & clamped[self.edges.ends].all(axis=1))
+        x = np.pad(rest, ((0, 0), (0, 1))) if positions is None else np.asarray(positions)
+        corners = self.faces[self.edges.faces[held, 0]]
+        plane = np.linalg.inv(np.diff(rest[corners], axis=1))
+        gradient = np.einsum("kia,kac->kic", plane, np.diff(x[corners], axis=1))
+        return Clamps(held, np.einsum("ki,kic->kc", self.edges.normal[held], gradient))
 
 
 def _tensors(components: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ from scipy.sparse import csc_array, csr_array, eye_array, kron
 
 from seatlook.errors import InputError
 from seatlook.model import Curve, Fabric, FloatArray, IntArray
+from seatlook.solver.curvature import Curvature
 from seatlook.solver.edgeslope import Edges, tangent_matrix
 from seatlook.solver.kernels import membrane as kernels
 
@@ -30,7 +31,7 @@ class Membrane:
     Parameters
     ----------
     edges : of the flat mesh
-    curvature : (3m, n) sparse [1/m2]     from ``curvature_operator``
+    curvature : from ``recover_curvature``
     area : (m,) float64 [m2]
     fabric : (m,) int64                   index into ``fabrics``
     """
@@ -38,21 +39,22 @@ class Membrane:
     def __init__(
         self,
         edges: Edges,
-        curvature: csr_array,
+        curvature: Curvature,
         area: FloatArray,
         fabric: IntArray,
         fabrics: Sequence[Fabric],
     ) -> None:
         self._edges, self._area, self._fabric = edges, area, fabric
         self._natural = natural_strains(edges)
-        bow = bow_operator(edges, curvature)
+        bow, self._bow_offset = bow_operator(edges, curvature)
+        count = bow.shape[1]
         self._rows = (bow.indptr.astype(np.int64), bow.indices.astype(np.int64), bow.data)
-        self._split = _common(tangent_matrix(curvature.shape[1], edges), bow)
+        self._split = _common(tangent_matrix(count, edges), bow)
         self._law = law_tables(fabrics)
         self._constants = np.array(
             [[f.poisson * f.weft.stiffness[0], f.compression_ratio] for f in fabrics]
         )
-        self._laplacian = self._plane_laplacian(curvature.shape[1], fabrics)
+        self._laplacian = self._plane_laplacian(count, fabrics)
         self._bow = np.empty((len(edges.ends), 3))
         self._edge_strain = np.empty(len(edges.ends))
         self._pull = np.empty(len(edges.ends))
@@ -132,7 +134,9 @@ class Membrane:
 
     def _deform(self, x: FloatArray) -> None:
         edges = self._edges
-        kernels.edge_strains(x, edges.ends, edges.length, *self._rows, self._bow, self._edge_strain)
+        kernels.edge_strains(
+            x, edges.ends, edges.length, *self._rows, self._bow_offset, self._bow, self._edge_strain
+        )
         kernels.strains(self._edge_strain, edges.of_face, self._natural, self._E)
 
     def _plane_laplacian(self, count: int, fabrics: Sequence[Fabric]) -> csc_array:
@@ -154,8 +158,8 @@ def natural_strains(edges: Edges) -> FloatArray:
     return np.linalg.inv(np.stack([t0 * t0, t1 * t1, t0 * t1], axis=2))
 
 
-def bow_operator(edges: Edges, curvature: csr_array) -> csr_array:
-    """Second derivative along every edge (e, n), the mean of that in its triangles."""
+def bow_operator(edges: Edges, curvature: Curvature) -> tuple[csr_array, FloatArray]:
+    """Second derivative along every edge, the mean of that in its triangles: (e, n), (e, 3)."""
     m = len(edges.of_face)
     t0, t1 = -edges.normal[edges.of_face, 1], edges.normal[edges.of_face, 0]
     share = np.where(edges.free, 1.0, 0.5)[edges.of_face]
@@ -163,7 +167,7 @@ def bow_operator(edges: Edges, curvature: csr_array) -> csr_array:
     rows = np.repeat(edges.of_face.ravel(), 3)
     columns = np.repeat(np.arange(3 * m).reshape(m, 1, 3), 3, axis=1).ravel()
     pick = csr_array((along.ravel(), (rows, columns)), shape=(len(edges.ends), 3 * m))
-    return csr_array(pick @ curvature)
+    return csr_array(pick @ curvature.operator), np.asarray(pick @ curvature.offset)
 
 
 def _common(first: csr_array, second: csr_array) -> tuple[csr_array, csr_array]:

@@ -61,14 +61,14 @@ def tangent(tables, counts, coupling, ratio, e11, e22, e12):
 
 
 @njit(cache=True)
-def edge_strains(x, ends, length, start, nodes, weights, bow, strain):
+def edge_strains(x, ends, length, start, nodes, weights, offset, bow, strain):
     """Green strain of every edge, its chord lengthened to the arc that its curvature makes.
 
     ``bow`` (e, 3) [1/m] is the second derivative along the edge, a quadratic's mean square slope
     being the square of the chord's plus a twelfth of (length times bow) squared.
     """
     for e in range(len(ends)):
-        b0 = b1 = b2 = 0.0
+        b0, b1, b2 = offset[e, 0], offset[e, 1], offset[e, 2]
         for i in range(start[e], start[e + 1]):
             v, w = nodes[i], weights[i]
             b0 += w * x[v, 0]

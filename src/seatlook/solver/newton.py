@@ -1,0 +1,216 @@
+"""Static equilibrium by Newton's method with a line search and a check of the inertia.
+
+At an equilibrium the factors of the true Hessian tell how many directions lead downhill. Where
+there are any the sheet has "not yet buckled": it is pushed along the softest one and goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import csc_array, diags_array
+from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
+
+from seatlook.model import FloatArray
+from seatlook.solver.energy import Energy
+
+BoolArray = npt.NDArray[np.bool_]
+# A negative pivot below this share of the largest one is rounding, not a mode.
+_ROUNDING = 1e-12
+_ARMIJO, _SHORTEST = 1e-4, 2.0**-30
+
+
+@dataclass(frozen=True, slots=True)
+class Equilibrium:
+    """Where Newton's method stopped.
+
+    Parameters
+    ----------
+    x : (n, 3) float64 [m]
+    residual : float [1]        largest force out of balance over the mean elastic nodal force
+    energy : (k,) float64 [J]   potential after every accepted step
+    downhill : int              negative pivots of the Hessian; 0 = stable, -1 = not known
+    kicks : int                 how often an unstable equilibrium was left
+    """
+
+    x: FloatArray
+    residual: float
+    energy: FloatArray
+    iterations: int
+    downhill: int
+    kicks: int
+
+    @property
+    def stable(self) -> bool:
+        """Whether every small movement costs energy."""
+        return self.downhill == 0
+
+
+class Potential:
+    """Sum of energies with some of the positions held.
+
+    Parameters
+    ----------
+    elastic : terms whose nodal forces measure the residual
+    others : loads and supports
+    free : (n, 3) bool
+    """
+
+    def __init__(
+        self, elastic: Sequence[Energy], others: Sequence[Energy], free: BoolArray
+    ) -> None:
+        self.elastic, self.others, self.free = tuple(elastic), tuple(others), free
+        self._index = np.flatnonzero(free)
+        self.rounding = 0.0
+
+    def value(self, x: FloatArray) -> tuple[float, FloatArray]:
+        """Return the potential [J] and its gradient [N]."""
+        gradient = np.zeros_like(x)
+        parts = [term.value(x, gradient) for term in (*self.elastic, *self.others)]
+        self.rounding = 1e-12 * sum(map(abs, parts))
+        return float(sum(parts)), gradient
+
+    def residual(self, x: FloatArray, gradient: FloatArray) -> float:
+        """Return the largest force out of balance over the mean elastic nodal force."""
+        mean = 0.0
+        for term in self.elastic:
+            part = np.zeros_like(x)
+            term.value(x, part)
+            mean += float(np.linalg.norm(part, axis=1).mean())
+        worst = float(np.linalg.norm(np.where(self.free, gradient, 0.0), axis=1).max())
+        return worst / mean if mean > 0.0 else (0.0 if worst == 0.0 else np.inf)
+
+    def hessian(self, x: FloatArray, *, definite: bool) -> csc_array:
+        """Second derivative over the free positions."""
+        terms = (*self.elastic, *self.others)
+        full = sum(term.hessian(x, definite=definite) for term in terms)
+        return csc_array(csc_array(full)[self._index][:, self._index])
+
+    def spread(self, values: FloatArray) -> FloatArray:
+        """Return an (n, 3) array with ``values`` at the free positions."""
+        out = np.zeros(self.free.shape)
+        out.flat[self._index] = values
+        return out
+
+    def gather(self, values: FloatArray) -> FloatArray:
+        """Return the free entries of an (n, 3) array."""
+        return np.asarray(values.ravel()[self._index])
+
+
+def newton(
+    potential: Potential,
+    x: FloatArray,
+    *,
+    tolerance: float = 1e-6,
+    max_iterations: int = 200,
+    kick: float = 0.0,
+    max_step: float = np.inf,
+) -> Equilibrium:
+    """Minimise the potential from ``x``.
+
+    Parameters
+    ----------
+    tolerance : largest residual taken as converged
+    kick : float [m]      length of the push away from an unstable equilibrium, 0 = stay there
+    max_step : float [m]  longest move of a vertex in one step
+    """
+    x = np.array(x, dtype=np.float64, order="C")
+    energy, gradient = potential.value(x)
+    state = Equilibrium(x, potential.residual(x, gradient), np.array([energy]), 0, -1, 0)
+    history, shift = [energy], 0.0
+    while state.iterations < max_iterations:
+        hessian = potential.hessian(state.x, definite=False)
+        factor, downhill = factorise(hessian)
+        if state.residual <= tolerance:
+            if downhill == 0 or kick == 0.0:
+                return replace(state, downhill=downhill, energy=np.array(history))
+            x = _push(potential, state.x, hessian, factor, kick)
+            energy, gradient = potential.value(x)
+            state = replace(state, x=x, kicks=state.kicks + 1)
+        else:
+            if downhill:
+                factor, shift = _definite(potential, state.x, hessian, shift)
+            else:
+                shift *= 0.1
+            step = potential.spread(-factor.solve(potential.gather(gradient)))
+            found = line_search(potential, (state.x, energy, gradient), step, max_step)
+            if found is None:
+                break
+            x, energy, gradient = found
+        history.append(energy)
+        state = replace(
+            state,
+            x=x,
+            residual=potential.residual(x, gradient),
+            iterations=state.iterations + 1,
+        )
+    return replace(state, energy=np.array(history))
+
+
+def line_search(
+    potential: Potential,
+    at: tuple[FloatArray, float, FloatArray],
+    step: FloatArray,
+    max_step: float,
+) -> tuple[FloatArray, float, FloatArray] | None:
+    """Shorten ``step`` until the potential falls enough (Armijo); None if it never does.
+
+    Where the fall drowns in rounding, a slope that has flattened tells the same.
+    """
+    x, energy, gradient = at
+    slope = float((gradient * step).sum())
+    longest = float(np.linalg.norm(step, axis=1).max())
+    share = min(1.0, max_step / longest) if longest > 0.0 else 1.0
+    while share > _SHORTEST:
+        trial = x + share * step
+        value, fresh = potential.value(trial)
+        if value <= energy + _ARMIJO * share * slope:
+            return trial, value, fresh
+        if value <= energy + potential.rounding and abs((fresh * step).sum()) <= 0.5 * abs(slope):
+            return trial, value, fresh
+        share *= 0.5
+    return None
+
+
+def factorise(hessian: csc_array) -> tuple[SuperLU, int]:
+    """Return the factors of a symmetric matrix and its number of negative pivots."""
+    factor = splu(
+        hessian,
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    pivots = factor.U.diagonal()
+    return factor, int((pivots < -_ROUNDING * np.abs(pivots).max()).sum())
+
+
+def _definite(
+    potential: Potential, x: FloatArray, hessian: csc_array, shift: float
+) -> tuple[SuperLU, float]:
+    """Factor the Hessian lifted by just enough of its diagonal, at most the projected one."""
+    projected = potential.hessian(x, definite=True)
+    scale = projected.diagonal()
+    shift = max(shift, 1e-6)
+    while shift < 0.1:
+        factor, downhill = factorise(csc_array(hessian + diags_array(shift * scale)))
+        if downhill == 0:
+            return factor, shift
+        shift *= 10.0
+    lifted = csc_array(projected + diags_array(1e-9 * scale.mean() + 1e-6 * scale))
+    return factorise(lifted)[0], 1e-3
+
+
+def _push(
+    potential: Potential, x: FloatArray, hessian: csc_array, factor: SuperLU, kick: float
+) -> FloatArray:
+    """Move along the softest mode, to the side where the potential is lower."""
+    inverse = LinearOperator(hessian.shape, matvec=factor.solve, dtype=np.float64)
+    start = np.linspace(1.0, 2.0, hessian.shape[0])
+    _, vectors = eigsh(hessian, k=1, sigma=0.0, which="LM", OPinv=inverse, v0=start, tol=1e-4)
+    mode = potential.spread(vectors[:, 0])
+    mode *= kick / np.linalg.norm(mode, axis=1).max()
+    sides = [x + mode, x - mode]
+    return min(sides, key=lambda side: potential.value(side)[0])

@@ -1,0 +1,186 @@
+"""Equilibrium of a bare sheet: any flat mesh, fabric, supports and loads in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from seatlook.errors import InputError, SolverError
+from seatlook.model import Fabric, FloatArray, IntArray
+from seatlook.solver.elastic import ElasticSheet
+from seatlook.solver.energy import Energy
+from seatlook.solver.loads import DeadLoad, Pressure
+from seatlook.solver.newton import Equilibrium, Potential, newton
+
+
+@dataclass(frozen=True, slots=True)
+class SheetSolution:
+    """Equilibrium of a sheet.
+
+    Parameters
+    ----------
+    positions : (n, 3) float64 [m]
+    sheet : ElasticSheet        gives ``strains(positions)`` and ``curvatures(positions)``
+    reactions : (n, 3) float64 [N]   what the supports push on the sheet; zero where it is free
+    converged : bool            residual within the tolerance, and stable
+    residual : float [1]        largest force out of balance over the mean elastic nodal force
+    energy : (k,) float64 [J]   potential after every accepted step of the last load step
+    """
+
+    positions: FloatArray
+    sheet: ElasticSheet
+    reactions: FloatArray
+    converged: bool
+    reason: str
+    residual: float
+    iterations: int
+    kicks: int
+    energy: FloatArray
+
+
+class SheetError(SolverError):
+    """No equilibrium was reached; ``solution`` is the last state."""
+
+    def __init__(self, reason: str, solution: SheetSolution) -> None:
+        super().__init__(reason)
+        self.solution = solution
+
+
+def solve_sheet(
+    rest: FloatArray,
+    faces: IntArray,
+    fabric: Fabric,
+    *,
+    positions: FloatArray | None = None,
+    fixed: npt.NDArray[np.bool_] | None = None,
+    clamped: npt.NDArray[np.bool_] | None = None,
+    prescribed: FloatArray | None = None,
+    loads: FloatArray | None = None,
+    pressure: float = 0.0,
+    gravity: Sequence[float] = (0.0, 0.0, 0.0),
+    supports: Sequence[Energy] = (),
+    steps: int = 1,
+    tolerance: float = 1e-3,
+    max_iterations: int = 300,
+    strict: bool = False,
+) -> SheetSolution:
+    """Find the stable equilibrium of a sheet under loads and supports.
+
+    Parameters
+    ----------
+    rest : (n, 2) float64 [m]; faces : (m, 3) int64   flat, counter-clockwise, warp along axis 0
+    positions : (n, 3) float64 [m]   where the search starts; the flat sheet if not given
+    fixed : (n,) or (n, 3) bool      vertices, or single components, that are held
+    clamped : (n,) bool              fixed vertices between which free edges keep their direction
+    prescribed : (n, 3) float64 [m]  where fixed components are taken to
+    loads : (n, 3) float64 [N]       forces of constant direction
+    pressure : float [Pa]            along the face normals
+    gravity : (3,) [m/s2]            acts on the fabric's mass
+    supports : further energies, such as a foundation
+    steps : loads and prescribed movements are applied in this many equal steps
+    tolerance : residual that counts as converged
+    strict : raise instead of returning what has not converged
+
+    Raises
+    ------
+    SheetError                          ``strict`` and not converged
+    InputError, InvertedElementError    the mesh is no flat oriented sheet
+
+    Examples
+    --------
+    >>> from seatlook.model import Curve
+    >>> stretch, bend = Curve.linear(1000.0), {"bending_warp": 1e-4, "bending_weft": 1e-4}
+    >>> fabric = Fabric(thickness=1e-3, density=0.3, warp=stretch, weft=stretch,
+    ...                 shear=Curve.linear(500.0), bending_twist=5e-5, **bend)
+    >>> rest = np.array([[0, 0], [0.1, 0], [0.1, 0.1], [0, 0.1]])
+    >>> faces = np.array([[0, 1, 2], [0, 2, 3]])
+    >>> pull = np.array([[0, 0, 0], [0.5, 0, 0], [0.5, 0, 0], [0, 0, 0]])
+    >>> end = np.array([True, False, False, True])
+    >>> solved = solve_sheet(rest, faces, fabric, fixed=end, loads=pull)
+    >>> round(float(solved.sheet.strains(solved.positions)[1][0, 0, 0]), 4)
+    0.0099
+    """
+    start = np.pad(rest, ((0, 0), (0, 1))) if positions is None else np.array(positions, float)
+    held = _held(len(rest), fixed, clamped)
+    sheet = ElasticSheet(
+        rest, faces, np.zeros(len(faces)), [fabric], clamped=clamped, positions=start
+    )
+    target = start if prescribed is None else np.where(held, prescribed, start)
+    force = sheet.mass[:, None] * np.asarray(gravity, dtype=np.float64)
+    force = force if loads is None else force + loads
+    x, found, kick = start, None, 0.5 * fabric.thickness
+    for step in range(1, steps + 1):
+        share = step / steps
+        others = [DeadLoad(share * force), *supports]
+        if pressure:
+            others.append(Pressure(sheet.faces, share * pressure))
+        potential = Potential(sheet.energies, others, ~held)
+        x = _moved(sheet, x, start + share * (target - start), held)
+        found = newton(potential, x, tolerance=tolerance, max_iterations=max_iterations, kick=kick)
+        x = found.x
+    if found is None:
+        raise InputError.single("steps", got=steps, expected="1 or more")
+    solution = _report(sheet, found, potential, tolerance)
+    if strict and not solution.converged:
+        raise SheetError(solution.reason, solution)
+    return solution
+
+
+def _held(
+    count: int, fixed: npt.NDArray[np.bool_] | None, clamped: npt.NDArray[np.bool_] | None
+) -> npt.NDArray[np.bool_]:
+    held = np.zeros((count, 3), dtype=bool)
+    for name, mask in (("fixed", fixed), ("clamped", clamped)):
+        if mask is None:
+            continue
+        mask = np.asarray(mask)
+        if mask.dtype != bool or mask.shape not in ((count,), (count, 3)):
+            raise InputError.single(
+                name, got=f"{mask.dtype} {mask.shape}", expected=f"bool ({count},) or ({count}, 3)"
+            )
+        held |= mask if mask.ndim == 2 else mask[:, None]
+    return held
+
+
+def _moved(
+    sheet: ElasticSheet, x: FloatArray, target: FloatArray, held: npt.NDArray[np.bool_]
+) -> FloatArray:
+    """Take held components to ``target``; the free ones follow as a soap film would."""
+    from scipy.sparse.linalg import splu
+
+    move = np.where(held, target - x, 0.0)
+    if not move.any():
+        return x
+    matrix = sheet.stiffness()
+    for axis in range(3):
+        free = np.flatnonzero(~held[:, axis])
+        if not len(free) or not move[:, axis].any():
+            continue
+        inner = matrix[free][:, free].tocsc()
+        move[free, axis] = splu(inner).solve(-(matrix @ move[:, axis])[free])
+    return x + move
+
+
+def _report(
+    sheet: ElasticSheet, found: Equilibrium, potential: Potential, tolerance: float
+) -> SheetSolution:
+    _, gradient = potential.value(found.x)
+    reasons = []
+    if not found.residual <= tolerance:
+        reasons.append(f"residual {found.residual:.2e} above {tolerance:.2e}")
+    elif not found.stable:
+        reasons.append(f"unstable: {found.downhill} directions lead downhill")
+    return SheetSolution(
+        positions=found.x,
+        sheet=sheet,
+        reactions=np.where(potential.free, 0.0, gradient),
+        converged=not reasons,
+        reason=", ".join(reasons),
+        residual=found.residual,
+        iterations=found.iterations,
+        kicks=found.kicks,
+        energy=found.energy,
+    )
