@@ -85,9 +85,13 @@ def page_data(folder: Path, **changes: object) -> PageData:
             heads=("zone", "area [cm2]", "W2 mean [1]"),
             rows=(("insert", 812.4, 0.0312), ("bolster_left seam", 40.25, None)),
         ),
-        "parameters": Table(
-            heads=("parameter", "value", "unit", "source"),
-            rows=(("thickness", 1.2, "mm", "judgement"),),
+        "parameters": MappingProxyType(
+            {
+                "scene": Table(heads=("key", "value", "source"), rows=(("seed", "0", None),)),
+                "cover pvc": Table(
+                    heads=("key", "value", "source"), rows=(("thickness_mm", "1.20", "judgement"),)
+                ),
+            }
         ),
         "provenance": MappingProxyType({"seatlook": "0.1.0", "scene": "sha256 abc"}),
         "status": "converged",

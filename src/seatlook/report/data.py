@@ -93,7 +93,7 @@ class PageData:
     pictures : (texture, rig name) -> path relative to the page; one for every cell
     maps : W1, W2, W_stretch, W_compression, ...
     zones : one row per zone
-    parameters : heads such as ("parameter", "value", "unit", "source")
+    parameters : what they belong to -> table of keys, values and sources
     provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
     checks : solver conditions and accept limits
     status : the solver's own word, such as "converged"
@@ -111,7 +111,7 @@ class PageData:
     pictures: MappingProxyType[tuple[str, str], str]
     maps: tuple[MapView, ...]
     zones: Table
-    parameters: Table
+    parameters: MappingProxyType[str, Table]
     provenance: MappingProxyType[str, str]
     status: str
     checks: tuple[Check, ...] = ()

@@ -15,7 +15,7 @@ from seatlook.pbr import ev100, lux_at_seat, offscreen_backend
 from seatlook.report.chart import number
 from seatlook.report.data import Check, MapView, PageData, RigHead, Table
 from seatlook.report.page import write_page
-from seatlook.report.parameters import parameter_table
+from seatlook.report.parameters import parameter_tables
 from seatlook.solver import foam_wavelength, verdict
 from seatlook.solver.process import RESIDUAL
 
@@ -39,8 +39,13 @@ _CONDITIONS: Mapping[str, tuple[str, float, float, str]] = {
         " %",
     ),
 }
-# Columns of the history that say how the solution came about.
-_CHARTED = ("energy", "elastic", "kinetic", "residual", "seam_gap")
+# column of the history -> its name on the page, factor to the unit in it
+_CHARTED: Mapping[str, tuple[str, float]] = {
+    "residual": ("out-of-balance force over mean elastic force", 1.0),
+    "seam_gap": ("largest seam gap [mm]", 1e3),
+    "elastic": ("elastic energy [J]", 1.0),
+    "kinetic": ("kinetic energy [J]", 1.0),
+}
 _LOOSE_MESH = 8.0  # lambda / h below which the wrinkles' shape is not resolved
 _FINE_MESH = 12.0  # lambda / h from which the indices are
 
@@ -66,13 +71,16 @@ def page_data(evaluation: Evaluation) -> PageData:
         pictures=evaluation.pictures,
         maps=tuple(_maps(evaluation)),
         zones=_zones(evaluation),
-        parameters=parameter_table(scene),
+        parameters=parameter_tables(scene),
         provenance=MappingProxyType(dict(_provenance(evaluation, waves))),
         status=solution.status,
         checks=(*_conditions(solution), *_limits(evaluation)),
         warnings=tuple(_warnings(evaluation, waves)),
         history=MappingProxyType(
-            {name: tuple(solution.history[name].tolist()) for name in _CHARTED}
+            {
+                name: tuple((factor * solution.history[column]).tolist())
+                for column, (name, factor) in _CHARTED.items()
+            }
         ),
         files=(RESULT, "zones.csv"),
     )
@@ -110,7 +118,7 @@ def _maps(evaluation: Evaluation) -> Iterator[MapView]:
 
 
 def _zones(evaluation: Evaluation) -> Table:
-    """Zone table without the free edges, which are clamped or trimmed and say nothing."""
+    """Zones, worst first, without the free edges, which are clamped or trimmed and say nothing."""
     return Table(
         heads=(
             "zone",
@@ -131,7 +139,7 @@ def _zones(evaluation: Evaluation) -> Table:
                 row.w_stretch_mean,
                 row.w_compression_mean,
             )
-            for row in evaluation.zones
+            for row in sorted(evaluation.zones, key=lambda row: -row.w2_p95)
             if row.zone != "free edge"
         ),
     )
@@ -198,6 +206,6 @@ def _provenance(evaluation: Evaluation, waves: Mapping[str, float]) -> Iterator[
             f"{number(1e3 * wave)} mm, lambda / h = {number(wave / cover.element_size)}",
         )
     yield "solver status", solution.status
-    for name, value in solution.figures.items():
-        if "/" not in name:  # those of one seam or hook are in the result file
-            yield f"solver {name.replace('_', ' ')}", number(value)
+    yield "solver steps", number(solution.figures["steps"])
+    yield "solver iterations", number(solution.figures["iterations"])
+    yield "solver CPU time", f"{number(solution.figures['cpu_seconds'])} s"

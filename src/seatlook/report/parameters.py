@@ -1,14 +1,15 @@
-"""The parameter table: every number of a run under the name it has in the files."""
+"""The parameter tables: every number of a run under the name it has in the files."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from seatlook.model import Appearance, Curve, Scene
+from seatlook.model import Curve, Scene
 from seatlook.report.chart import number
 from seatlook.report.data import Table
 
@@ -32,31 +33,35 @@ _FILE_KEYS: Mapping[str, tuple[str, float]] = {
     "smallest_notch": ("smallest_notch_mm", 1e3),
 }
 _SCENE = ("element_size", "smallest_notch", "seed", "curvature", "c_threshold")
-Row = tuple[str, str, str, str | None]
+Row = tuple[str, str, str | None]
 
 
-def parameter_table(scene: Scene) -> Table:
+def parameter_tables(scene: Scene) -> MappingProxyType[str, Table]:
     """List the scene's settings, its cover materials, foam and textures, each with its source."""
-    rows: list[Row] = [("scene", *_entry(name, getattr(scene, name)), None) for name in _SCENE]
-    for material in {m.name: m for m in scene.materials.values()}.values():
-        rows += _rows(material.name, material.fabric, material.source)
-        rows += _rows(material.name, material.appearance, material.source)
-        if material.c_threshold is not None:
-            key, value = _entry("c_threshold", material.c_threshold)
-            rows.append((material.name, key, value, material.source.get(key)))
+    tables: dict[str, list[Row]] = {
+        "scene": [(*_entry(name, getattr(scene, name)), None) for name in _SCENE]
+    }
+    for m in {m.name: m for m in scene.materials.values()}.values():
+        tables[f"cover {m.name}"] = [*_rows(m.fabric, m.source), *_rows(m.appearance, m.source)]
+        if m.c_threshold is not None:
+            key, value = _entry("c_threshold", m.c_threshold)
+            tables[f"cover {m.name}"].append((key, value, m.source.get(key)))
     foam = scene.foam.material
-    rows += _rows(foam.name, foam, foam.source)
+    tables[f"foam {foam.name}"] = list(_rows(foam, foam.source))
     for name, appearance in scene.textures.items():
-        if isinstance(appearance, Appearance):
-            rows += _rows(f"texture {name}", appearance, {})
-    return Table(heads=("of", "key", "value", "source"), rows=tuple(rows))
+        if appearance is not None:
+            tables[f"texture {name}"] = list(_rows(appearance, {}))
+    heads = ("key", "value", "source")
+    return MappingProxyType(
+        {owner: Table(heads=heads, rows=tuple(rows)) for owner, rows in tables.items()}
+    )
 
 
-def _rows(owner: str, values: Any, source: Mapping[str, str]) -> Iterator[Row]:
+def _rows(values: Any, source: Mapping[str, str]) -> Iterator[Row]:
     for field in dataclasses.fields(values):
         if field.name not in ("name", "source"):
             key, value = _entry(field.name, getattr(values, field.name))
-            yield owner, key, value, source.get(key)
+            yield key, value, source.get(key)
 
 
 def _entry(name: str, value: Any) -> tuple[str, str]:
