@@ -40,14 +40,18 @@ class Bending:
         self._matrix = matrix
         self._start = matrix.indptr.astype(np.int64)
         self._columns = matrix.indices.astype(np.int64)
-        self._force = np.asarray(weighted.T @ curvature.offset)
-        self._constant = 0.5 * float((curvature.offset * (weight @ curvature.offset)).sum())
+        # Clamped slopes make large terms that cancel; around ``reference`` they are small.
+        self._reference = curvature.reference
+        at_reference = curvature.at(curvature.reference).reshape(-1, 3)
+        self._force = np.asarray(weighted.T @ at_reference)
+        self._constant = 0.5 * float((at_reference * (weight @ at_reference)).sum())
 
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N] to ``gradient``."""
-        energy = quadratic(self._start, self._columns, self._matrix.data, x, gradient)
+        moved = x - self._reference
+        energy = quadratic(self._start, self._columns, self._matrix.data, moved, gradient)
         gradient += self._force
-        return float(energy + (self._force * x).sum() + self._constant)
+        return float(energy + (self._force * moved).sum() + self._constant)
 
     def stiffness(self) -> csc_array:
         """The bending matrix itself, (n, n) [N/m]."""

@@ -19,10 +19,12 @@ class Clamps:
     ----------
     edges : (k,) int64              index of each clamped edge
     slopes : (k, 3) float64 [1]     derivative of the positions along its conormal
+    positions : (n, 3) float64 [m]  a state in which the slopes hold
     """
 
     edges: IntArray
     slopes: FloatArray
+    positions: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +35,12 @@ class Curvature:
     ----------
     operator : (3m, n) sparse [1/m2]
     offset : (3m, 3) float64 [1/m]      what clamped edges add
+    reference : (n, 3) float64 [m]      positions where both nearly cancel
     """
 
     operator: csr_array
     offset: FloatArray
+    reference: FloatArray
 
     def at(self, x: FloatArray) -> FloatArray:
         """Return (x,11, x,22, 2 x,12) of every triangle, (m, 3, 3) [1/m]."""
@@ -76,7 +80,11 @@ def recover_curvature(
         axis=1,
     )
     release = _release(edges, stiffness, edges.free & ~held)
-    return Curvature(csr_array(release @ operator), release @ offset.reshape(-1, 3))
+    return Curvature(
+        operator=csr_array(release @ operator),
+        offset=release @ offset.reshape(-1, 3),
+        reference=np.zeros((count, 3)) if clamps is None else clamps.positions,
+    )
 
 
 def blocks(values: FloatArray) -> csr_array:

@@ -116,7 +116,8 @@ class ElasticSheet:
         corners = self.faces[self.edges.faces[held, 0]]
         plane = np.linalg.inv(np.diff(rest[corners], axis=1))
         gradient = np.einsum("kia,kac->kic", plane, np.diff(x[corners], axis=1))
-        return Clamps(held, np.einsum("ki,kic->kc", self.edges.normal[held], gradient))
+        slopes = np.einsum("ki,kic->kc", self.edges.normal[held], gradient)
+        return Clamps(edges=held, slopes=slopes, positions=x)
 
 
 def _tensors(components: FloatArray) -> FloatArray:
