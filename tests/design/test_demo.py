@@ -146,6 +146,18 @@ def test_foam_lies_half_a_thickness_below_the_cover(surface, foam, solid_angle):
         assert np.mean(np.abs(found - wanted) < 1e-6) > 0.97
 
 
+def test_foam_leaves_room_under_the_wires(foam, solid_angle, cushion):
+    """A slot as deep as said in the middle of the trench, none where the trench has run out."""
+    for wire in ("trench_left", "trench_right"):
+        line = foam.curves[wire]
+        deepest = line[np.abs(line[:, 1] - cushion.seat_y).argmin()]
+        for below, wanted in ((0.8 * cushion.slot, 0.0), (1.4 * cushion.slot, 1.0)):
+            point = deepest - [0, 0, below]
+            assert solid_angle(point[None], foam.vertices, foam.faces) == pytest.approx(wanted)
+        ends = line[[1, -2]] - [0, 0, 0.0015]
+        assert solid_angle(ends, foam.vertices, foam.faces) == pytest.approx(1.0)
+
+
 def test_wires_lie_on_the_seams_and_frame_on_the_lower_edges(surface, foam):
     by_name = {side.name: side for side in sides(surface.patches())}
     pairs = {

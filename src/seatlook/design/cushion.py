@@ -32,6 +32,7 @@ class Cushion:
     roll, roll_front : radius at sides, corners and rear; in the middle of the front
     roll_angle : angle turned by the roll; beyond 90 degrees the wall leans inward
     seam_angle : where on the roll the top is sewn to the walls
+    slot : extra depth of the foam right under a trench, room for the wire; fades like the trench
     frame_height : level at which the cover ends; the foam's bottom is at 0
     """
 
@@ -55,6 +56,7 @@ class Cushion:
     roll_front: float = 0.060
     roll_angle: float = np.deg2rad(90.0)
     seam_angle: float = np.deg2rad(48.0)
+    slot: float = 0.003
     frame_height: float = 0.025
 
     @property
@@ -77,9 +79,13 @@ class Cushion:
         # Sixth power: round shoulders, so the insert swells like a pillow between its seams.
         inner = self.trench_depth - self.pillow * (1 - 0.35 * u**2 - 0.65 * u**6)
         carved = np.where(np.abs(x) < trench, inner, self.trench_depth * out**2)
-        fade = np.where(y < self.seat_y, self.fade_front, self.fade_rear)
-        phase = np.clip((y - self.seat_y) / fade, -1, 1)
-        return np.asarray(level - carved * np.cos(np.pi / 2 * phase) ** 2)
+        return np.asarray(level - carved * self.fade(y))
+
+    def fade(self, y: FloatArray) -> FloatArray:
+        """Share of the trench's depth that is left at ``y``."""
+        reach = np.where(y < self.seat_y, self.fade_front, self.fade_rear)
+        phase = np.clip((y - self.seat_y) / reach, -1, 1)
+        return np.asarray(np.cos(np.pi / 2 * phase) ** 2)
 
     def outline(self, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Project p (k, 2) onto the plan outline: foot (k, 2), outward normal, signed distance."""

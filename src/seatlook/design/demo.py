@@ -58,6 +58,8 @@ def demo_foam_mesh(
 ) -> FoamMesh:
     """Return the foam below the design surface: half a cover thickness inside it, closed below.
 
+    Under the trenches it is cut deeper by the cushion's ``slot``, to give the wires room.
+
     Parameters
     ----------
     cushion, element_size : as in ``demo_design``
@@ -77,7 +79,9 @@ def demo_foam_mesh(
     # At the trench's crease the normals of both flanks lean away from the vertex normal.
     flank = np.einsum("md,mkd->mk", mesh.face_normals(surface, plane.faces), normals[plane.faces])
     lean = np.bincount(plane.faces.ravel(), flank.ravel()) / np.bincount(plane.faces.ravel())
-    vertices = surface - (0.5 * cover_thickness / lean)[:, None] * normals
+    x, y = plane.points.T
+    slot = np.where(np.abs(np.abs(x) - shape.trench_x(y)) < 1e-9, shape.slot * shape.fade(y), 0.0)
+    vertices = surface - (0.5 * cover_thickness / lean + slot)[:, None] * normals
     rim = mesh.boundary_loops(plane.faces)[0]
     vertices[rim, 2] = 0.0
     bottom, bottom_faces = mesh.triangulate(vertices[rim, :2], element_size)
