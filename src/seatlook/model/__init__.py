@@ -6,6 +6,7 @@ from seatlook.model.light import LIGHTS, VIEWS, Camera, Light, Rig, bulb, direct
 from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
 from seatlook.model.scene import Frame, Hook, Limit, Pose, Scene, ZoneBox
+from seatlook.model.shells import ShellResult, Shells, ShellState
 
 __all__ = [
     "LIGHTS",
@@ -34,6 +35,9 @@ __all__ = [
     "Rig",
     "Scene",
     "Seam",
+    "ShellResult",
+    "ShellState",
+    "Shells",
     "Solution",
     "Stage",
     "Stitching",

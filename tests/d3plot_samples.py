@@ -1,0 +1,106 @@
+"""d3plot files written word by word, apart from the reader, with every part that shifts others."""
+
+import numpy as np
+
+END = -999999.0
+
+
+def quad_strip(n=6, size=10.0):
+    """Nodes (mm) and shells of a flat strip of n quadrilaterals, the last one cut in two triangles.
+
+    Node numbers from 1; a triangle repeats its third node.
+    """
+    nodes = np.array([[i * size, j * size, 0.0] for i in range(n + 1) for j in range(2)])
+    quads = [[2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2] for i in range(n)]
+    a, b, c, d = quads.pop()
+    return nodes, np.array([*quads, [a, b, c, c], [a, c, d, d]])
+
+
+def d3plot(
+    nodes,
+    shells,
+    states,
+    *,
+    part=None,
+    word="<i4",
+    thickness=True,
+    strains=True,
+    layers=3,
+    velocity=True,
+    solids=0,
+    beams=0,
+    globals_=8,
+    deletion=None,
+    rigid_part=None,
+    names=None,
+    ids=True,
+    control=None,
+):
+    """Bytes of one file.
+
+    ``states``: list of (time, positions, thickness (e,), inner (e, 6), outer (e, 6)).
+    ``names``: part number (from 1) -> title. User numbers: nodes 1.., shells 101.., parts 11..
+    """
+    real = word.replace("i", "f")
+    e, n = len(shells), len(nodes)
+    part = np.ones(e, dtype=int) if part is None else np.asarray(part)
+    parts = int(part.max())
+    width = layers * 7 + 8 * 1 + 4 * thickness + 12 * strains
+    reported = np.ones(e, dtype=bool) if rigid_part is None else part != rigid_part
+    head = np.zeros(64, dtype=word)
+    narbs = 16 + n + solids + beams + e + 3 * parts if ids else 0
+    values = {
+        11: 1, 15: 3 if rigid_part is None else 5, 16: n, 17: 6, 18: globals_, 20: 1,
+        21: int(velocity), 23: solids, 24: 1 if solids else 0, 27: 7, 28: beams, 30: 6,
+        31: e, 32: parts, 33: width, 36: layers if deletion is None else -(10000 + layers), 39: narbs,
+        43: 1000, 44: 1000, 45: 1000, 46: 1000 if thickness else 0, 51: parts,
+    }  # fmt: skip
+    for at, value in (values | (control or {})).items():
+        head[at] = value
+    out = [head]
+    if rigid_part is not None:
+        kinds = np.full(parts, 34)
+        kinds[rigid_part - 1] = 20
+        out.append(np.array([(~reported).sum(), parts, *kinds], dtype=word))
+    out.append(_floats(nodes, real, word))
+    out.append(np.ones(9 * solids, dtype=word))
+    out.append(np.ones(6 * beams, dtype=word))
+    out.append(np.column_stack([shells, part]).astype(word).ravel())
+    if ids:
+        out.append(np.array([-1, *[0] * 4, n, solids, beams, e, 0, 0, 0, 0, parts, 0, parts], word))
+        runs = [np.arange(1, n + 1), 1 + np.arange(solids), 1 + np.arange(beams),
+                101 + np.arange(e), *[11 + np.arange(parts)] * 3]  # fmt: skip
+        out += [r.astype(word) for r in runs]
+    out.append(_floats([END], real, word))
+    if names:
+        out += _titles(names, word)
+        out.append(_floats([END], real, word))
+    for time, positions, t, inner, outer in states:
+        rows = [np.full((e, layers * 7 + 8), 0.125)]
+        if thickness:
+            rows += [np.asarray(t)[:, None], np.full((e, 2), 0.25)]
+        if strains:
+            rows += [inner, outer]
+        if thickness:
+            rows.append(np.full((e, 1), 0.5))
+        row = np.hstack(rows)[reported]
+        pieces = [[time], np.full(globals_, 0.75), np.ravel(positions)]
+        pieces += [np.full(3 * n, 0.0625)] if velocity else []
+        pieces += [np.full(7 * solids + 6 * beams, 0.375), row.ravel()]
+        if deletion is not None:
+            pieces += [np.ones(solids), deletion, np.ones(beams)]
+        out.append(_floats(np.concatenate([np.ravel(p) for p in pieces]), real, word))
+    out.append(_floats([END], real, word))
+    return b"".join(a.tobytes() for a in out)
+
+
+def _floats(values, real, word):
+    return np.asarray(values, dtype=real).ravel().view(word)
+
+
+def _titles(names, word):
+    out = [np.array([90001, len(names)], dtype=word)]
+    for number, title in names.items():
+        out.append(np.array([number], dtype=word))
+        out.append(np.frombuffer(title.encode().ljust(72), dtype=word))
+    return out
