@@ -6,7 +6,7 @@ from seatlook.design import DesignSurface, flatten
 from seatlook.errors import InputError
 
 
-def half_pipe(radius=0.1, turn=1.5, length=0.16, h=0.005):
+def half_pipe(radius=0.1, turn=1.5, length=0.16, h=0.008):
     """Part of a cylinder along y cut into two panels by a seam at its top."""
     half = radius * turn / 2
     corners = np.array([[-half, 0], [half, 0], [half, length], [-half, length], [-half, 0]])
@@ -28,7 +28,7 @@ def width(panel):
 
 
 def test_developable_panels_come_out_exactly():
-    surface, flat = half_pipe()
+    surface, flat = half_pipe(h=0.005)
     found = flatten(surface)
     for patch, name in zip(surface.patches(), "LR", strict=True):
         exact = flat[patch.source]
@@ -116,8 +116,19 @@ def test_waiting_panels_are_clear_of_the_foam(flattened, surface, foam, solid_an
     for patch in surface.patches():
         pose = flattened.placement[patch.name]
         placed = flattened.flat[patch.name] @ pose.rotation[:, :2].T + pose.translation
-        inside = solid_angle(placed[::11], foam.vertices, foam.faces) > 0.5
+        inside = solid_angle(placed[::31], foam.vertices, foam.faces) > 0.5
         assert not inside.any(), patch.name
+
+
+def test_sharp_corners_of_free_edges_are_corners():
+    surface, _ = half_pipe()
+    for panel in flatten(surface).pattern.panels:
+        assert len(panel.corners) == 4
+        low, high = panel.outline.min(axis=0), panel.outline.max(axis=0)
+        box = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
+        found = panel.outline[panel.corners]
+        gaps = np.linalg.norm(found[:, None] - np.array(box)[None], axis=2)
+        assert gaps.min(axis=0).max() < 1e-4
 
 
 @pytest.mark.parametrize("name", ["L.R", "L-R"])

@@ -11,10 +11,11 @@ import shapely
 from seatlook import mesh
 from seatlook.design.surface import FREE, Patch, Side
 from seatlook.errors import InputError
-from seatlook.model import Edge, FloatArray, Notch, Panel, Pattern, Seam
+from seatlook.model import Edge, FloatArray, IntArray, Notch, Panel, Pattern, Seam
 
 _NOTCH_DEPTH = 0.004
 _NOTCH_SPACING = 0.3
+_SHARP_TURN = np.radians(25.0)
 
 
 def cut_outline(outline: FloatArray, allowance: float) -> FloatArray:
@@ -84,7 +85,7 @@ def sewing_pattern(
             Panel(
                 name=patch.name,
                 outline=outline,
-                corners=np.array([side.start for side in own]),
+                corners=_corners(outline, [side.start for side in own]),
                 cut_outline=cut_outline(outline, allowance),
                 grain=np.array([0.0, 1.0]),
                 notches=tuple(notches),
@@ -105,6 +106,15 @@ def pair(borders: tuple[Side, ...]) -> tuple[Seam, ...]:
             other = by_ends[side.neighbour, int(side.vertices[-1]), int(side.vertices[0])]
             seams.append(Seam(name=side.name.replace(".", "-"), a=side.name, b=(other,)))
     return tuple(seams)
+
+
+def _corners(outline: FloatArray, starts: list[int]) -> IntArray:
+    """Return the outline's vertices that must survive resampling: ends of edges, sharp turns."""
+    ahead = np.roll(outline, -1, axis=0) - outline
+    behind = np.roll(ahead, 1, axis=0)
+    cross = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+    turn = np.abs(np.arctan2(cross, (behind * ahead).sum(axis=1)))
+    return np.union1d(starts, np.flatnonzero(turn > _SHARP_TURN))
 
 
 def _edges(patches: tuple[Patch, ...], borders: tuple[Side, ...]) -> dict[str, Edge]:
