@@ -209,6 +209,17 @@ def test_validation_copies_are_ignored(panel):
     assert len(read.outline) == 4
 
 
+def test_internal_lines_are_named_by_the_text_at_their_end(panel):
+    named = ["0", "TEXT", "8", "8", "10", "20", "20", "20.2", "40", "1", "1", "tie-down"]
+    rows = [
+        line("8", (20, 20), (60, 20)),
+        line("8", (20, 20.4), (20, 60)),
+        line("8", (70, 70), (80, 70)),
+    ]
+    read = panel(polyline("1", SQUARE), *rows, named, GRAIN)
+    assert list(read.internal_lines) == ["tie-down", "tie-down 2", "line3"]
+
+
 def test_notch_kinds(panel):
     layers = {"4": "point", "80": "t", "81": "castle", "82": "check", "83": "u"}
     points = [point(layer, (10, 0)) for layer in layers]
@@ -294,6 +305,20 @@ def test_cut_outs_are_not_dropped_silently(panel):
     hole = polyline("11", [(40, 40), (50, 40), (50, 50)])
     with pytest.warns(InputWarning, match=r"cut-outs \(layer 11\) are ignored"):
         panel(polyline("1", SQUARE), hole, GRAIN)
+
+
+def test_mirrored_quantity_is_not_dropped_silently(panel):
+    with pytest.warns(InputWarning, match="piece A: quantity 1,1: the mirrored piece is not made"):
+        panel(polyline("1", SQUARE), text("1", "QUANTITY: 1,1"), GRAIN)
+    panel(polyline("1", SQUARE), text("1", "Quantity: 2,0"), GRAIN)
+
+
+def test_insert_without_a_name(write, problems):
+    whole = dxf({"A": [polyline("1", SQUARE), GRAIN]})
+    path = write("a.dxf", whole.replace("INSERT\n8\n1\n2\nA\n", "INSERT\n8\n1\n"))
+    assert problems(read_dxf, path) == [
+        "a.dxf: pieces: got none, expected blocks with an outline on layer 1"
+    ]
 
 
 @pytest.mark.parametrize("content", ["not a drawing\n", "", "0\nSECTION\n2\nHEA"])

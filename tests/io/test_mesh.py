@@ -113,6 +113,21 @@ def test_file_without_faces(write, problems, name, content):
     assert message.endswith("expected a surface of triangles (.obj, .stl, .ply)")
 
 
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("a.obj", "v 0\nv 1\nv 2\nf 1 2 3\n"),
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"),
+        ("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+         "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"),
+    ],
+)  # fmt: skip
+def test_faces_that_fit_no_vertices(write, problems, name, content):
+    (message,) = problems(read_foam, write(name, content), material=FOAM, unit="mm")
+    assert message.startswith(f"{name}: file: got ")
+
+
 def test_unknown_format(write, problems):
     assert problems(read_foam, write("a.step", "x"), material=FOAM, unit="mm") == [
         "a.step: file: got '.step', expected one of .obj, .stl, .ply"

@@ -14,11 +14,25 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 import ezdxf.filemanagement
-import ezdxf.path
 import numpy as np
-from ezdxf.lldxf.encoding import decode_dxf_unicode
+from ezdxf.lldxf.const import DXFError
 
 from seatlook.errors import InputError, InputWarning, Problem, did_you_mean
+from seatlook.io._dxf_entities import (
+    BOUNDARY,
+    CUT_OUT,
+    GRAIN,
+    INTERNAL,
+    MIRROR,
+    NOTCH_LAYERS,
+    SEW,
+    TURN,
+    read_line_names,
+    read_notches,
+    read_points,
+    read_polylines,
+    read_texts,
+)
 from seatlook.io._outline import (
     MEETING_MM,
     Chain,
@@ -32,16 +46,7 @@ from seatlook.io._outline import (
 )
 from seatlook.io._toml import read_file
 from seatlook.model import FloatArray, Notch, Panel
-from seatlook.model.pattern import NotchKind
 
-BOUNDARY, TURN, CURVE, NOTCH, MIRROR, GRAIN, INTERNAL, CUT_OUT, SEW = (
-    "1", "2", "3", "4", "6", "7", "8", "11", "14",
-)  # fmt: skip
-# Layers 84 to 87 repeat the outlines for quality checks and are not read. A notch on layer 4 is
-# a mark without a cut when it has no depth.
-NOTCH_LAYERS: dict[str, NotchKind] = {
-    NOTCH: "v", "80": "t", "81": "castle", "82": "check", "83": "u",
-}  # fmt: skip
 MM_PER_UNIT = {"metric": 1.0, "english": 25.4}
 
 Units = Literal["metric", "english"]
@@ -72,9 +77,16 @@ def read_dxf(
         10 m, when a piece has no grain line. All pieces are reported at once.
     """
     document = _open(path)
-    titles = _titles(document)
-    scale = _scale(path, titles, units)
-    blocks = _blocks(path, document, titles, size)
+    try:
+        titles = _titles(document)
+        scale = _scale(path, titles, units)
+        blocks = _blocks(path, document, titles, size)
+        return _panels(path, blocks, scale)
+    except DXFError as error:  # an entity without the values it must have
+        raise _refusal(path, error) from error
+
+
+def _panels(path: Path, blocks: dict[str, Any], scale: float) -> tuple[Panel, ...]:
     problems: list[Problem] = []
     panels: list[Panel] = []
     for name, block in blocks.items():
@@ -92,26 +104,20 @@ def _open(path: Path) -> Any:
     try:
         return ezdxf.filemanagement.readfile(path)
     except Exception as error:  # on damaged files the library raises whatever it stumbles over
-        raise InputError.single(
-            "file", got=str(error) or type(error).__name__, expected="a whole DXF file", file=path
-        ) from error
+        raise _refusal(path, error) from error
+
+
+def _refusal(path: Path, error: Exception) -> InputError:
+    got = str(error) or type(error).__name__
+    return InputError.single("file", got=got, expected="a whole DXF file", file=path)
 
 
 def _titles(document: Any) -> dict[str, str]:
     """Collect the ``Key: value`` texts of the file; those outside the blocks come first."""
     titles: dict[str, str] = {}
     for layout in (*document.blocks, document.modelspace()):
-        titles |= _texts(layout)
+        titles |= read_texts(layout)
     return titles
-
-
-def _texts(layout: Any) -> dict[str, str]:
-    found = {}
-    for entity in layout.query("TEXT"):
-        key, colon, value = decode_dxf_unicode(entity.dxf.text).partition(":")
-        if colon:
-            found[key.strip().casefold()] = value.strip()
-    return found
 
 
 def _scale(path: Path, titles: dict[str, str], units: Units | None) -> float:
@@ -130,10 +136,10 @@ def _scale(path: Path, titles: dict[str, str], units: Units | None) -> float:
 
 def _blocks(path: Path, document: Any, titles: dict[str, str], size: str | None) -> dict[str, Any]:
     """Return piece name -> block of the wanted size, in the order of the file."""
-    used = [e.dxf.name for e in document.modelspace().query("INSERT")]
+    used = [e.dxf.get("name", "") for e in document.modelspace().query("INSERT")]
     names = list(dict.fromkeys(used)) or [b.name for b in document.blocks]
     blocks = [document.blocks.get(n) for n in names]
-    pieces = [(b, _texts(b)) for b in blocks if b is not None and _polylines(b, BOUNDARY)]
+    pieces = [(b, read_texts(b)) for b in blocks if b is not None and read_polylines(b, BOUNDARY)]
     if not pieces:
         raise InputError.single(
             "pieces", got="none", expected="blocks with an outline on layer 1", file=path
@@ -147,32 +153,15 @@ def _blocks(path: Path, document: Any, titles: dict[str, str], size: str | None)
             hint=did_you_mean(size or "", sizes),
         )  # fmt: skip
     chosen: dict[str, Any] = {}
-    for block, texts in pieces:
-        name = texts.get("piece name", block.name)
-        if size is None or texts.get("size", size) == size:
+    for block, titled in pieces:
+        name = titled.get("piece name", block.name)
+        if size is None or titled.get("size", size) == size:
             if name in chosen:
                 raise InputError.single(
                     f"piece {name}", got="two blocks of one name", expected="one", file=path
                 )
             chosen[name] = block
     return chosen
-
-
-def _polylines(block: Any, layer: str) -> list[FloatArray]:
-    """Return the lines of one layer, (k, 2) each in file units; closed ones repeat a point."""
-    lines = []
-    for entity in block.query(f'LINE POLYLINE LWPOLYLINE ARC SPLINE[layer=="{layer}"]'):
-        kind = entity.dxftype()
-        if kind == "LINE":
-            points = [entity.dxf.start, entity.dxf.end]
-        elif kind == "POLYLINE" and not entity.has_arc:
-            points = [v.dxf.location for v in entity.vertices]
-            points += points[:1] if entity.is_closed else []
-        else:
-            points = list(ezdxf.path.make_path(entity).flattening(0.001))
-        if len(points) > 1:
-            lines.append(np.array([(p.x, p.y) for p in points], dtype=np.float64))
-    return lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,14 +180,15 @@ class _Piece:
     @classmethod
     def read(cls, name: str, block: Any, scale: float) -> _Piece:
         layers = {
-            layer: [scale * line for line in _polylines(block, layer)]
+            layer: [scale * line for line in read_polylines(block, layer)]
             for layer in (BOUNDARY, SEW, INTERNAL, GRAIN, MIRROR, CUT_OUT)
         }
         _refuse_nan(name, layers)
         if layers[CUT_OUT]:
             warnings.warn(f"piece {name}: cut-outs (layer 11) are ignored", InputWarning, 4)
-        marks = _points(block, TURN, scale)
-        notches = [n for layer in NOTCH_LAYERS for n in _notches(block, layer, scale)]
+        _warn_of_mirrored(name, read_texts(block).get("quantity", ""))
+        marks = read_points(block, TURN, scale)
+        notches = [n for layer in NOTCH_LAYERS for n in read_notches(block, layer, scale)]
         axis = _axis(layers[MIRROR], layers[BOUNDARY])
         if axis is not None:
             for layer in (BOUNDARY, SEW, INTERNAL):
@@ -213,7 +203,7 @@ class _Piece:
             grain=layers[GRAIN],
             marks=marks,
             notches=notches,
-            line_names=_line_names(block, scale),
+            line_names=read_line_names(block, scale),
         )
 
     def panel(self) -> Panel:
@@ -254,8 +244,17 @@ class _Piece:
                 for text, place in self.line_names
                 if np.hypot(*(points[[0, -1]] - place).T).min() < 5 * MEETING_MM
             ]
-            lines[names[0] if names else f"line{number}"] = 1e-3 * points
+            name = names[0] if names else f"line{number}"
+            lines[f"{name} {number}" if name in lines else name] = 1e-3 * points
         return lines
+
+
+def _warn_of_mirrored(name: str, quantity: str) -> None:
+    """Warn where the second number of ``as drawn,mirrored`` asks for pieces nobody drew."""
+    mirrored = quantity.partition(",")[2].strip()
+    if mirrored.isdigit() and int(mirrored) > 0:
+        text = f"piece {name}: quantity {quantity}: the mirrored piece is not made, draw it"
+        warnings.warn(text, InputWarning, 5)
 
 
 def _refuse_nan(name: str, layers: dict[str, list[FloatArray]]) -> None:
@@ -287,19 +286,6 @@ def _axis(mirror: Sequence[FloatArray], boundary: Sequence[FloatArray]) -> Float
     return axis if away.min() > -MEETING_MM or away.max() < MEETING_MM else None
 
 
-def _points(block: Any, layer: str, scale: float) -> FloatArray:
-    places = [e.dxf.location for e in block.query(f'POINT[layer=="{layer}"]')]
-    return scale * np.array([(p.x, p.y) for p in places]).reshape(-1, 2)
-
-
-def _notches(block: Any, layer: str, scale: float) -> Iterable[Notch]:
-    for entity in block.query(f'POINT[layer=="{layer}"]'):
-        x, y, depth = entity.dxf.location
-        kind: NotchKind = "point" if layer == NOTCH and depth == 0 else NOTCH_LAYERS[layer]
-        mm = 1e-3 * scale
-        yield Notch(position=np.array([mm * x, mm * y]), kind=kind, depth=mm * abs(depth))
-
-
 def _mirrored(notches: Iterable[Notch], axis: FloatArray) -> list[Notch]:
     mirrored = []
     for notch in notches:
@@ -308,8 +294,3 @@ def _mirrored(notches: Iterable[Notch], axis: FloatArray) -> list[Notch]:
             position = 1e-3 * reflect(place, axis)[0]
             mirrored.append(Notch(position=position, kind=notch.kind, depth=notch.depth))
     return mirrored
-
-
-def _line_names(block: Any, scale: float) -> list[tuple[str, FloatArray]]:
-    texts = block.query(f'TEXT[layer=="{INTERNAL}"]')
-    return [(t.dxf.text.strip(), scale * np.array([t.dxf.insert.x, t.dxf.insert.y])) for t in texts]

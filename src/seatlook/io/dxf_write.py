@@ -1,7 +1,8 @@
 """Writing AAMA / ASTM D6673 pattern files.
 
-The text is written here rather than by a DXF library: pattern systems exchange a bare R12 file
-(blocks and inserts, no tables), and the same pattern gives the same bytes.
+The text is written here rather than by a DXF library: pattern systems expect a bare R12 file (an
+empty header, no tables, no blocks but the pieces, ASCII only), and the same pattern gives the same
+bytes.
 """
 
 from __future__ import annotations
@@ -13,7 +14,16 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.files import write_bytes
-from seatlook.io.dxf import BOUNDARY, CURVE, GRAIN, INTERNAL, NOTCH, NOTCH_LAYERS, SEW, TURN
+from seatlook.io._dxf_entities import (
+    BOUNDARY,
+    CURVE,
+    GRAIN,
+    INTERNAL,
+    NOTCH,
+    NOTCH_LAYERS,
+    SEW,
+    TURN,
+)
 from seatlook.model import FloatArray, Notch, Panel, Pattern
 
 _LAYER_OF_NOTCH = {kind: layer for layer, kind in NOTCH_LAYERS.items()} | {"point": NOTCH}
@@ -39,7 +49,7 @@ def write_dxf(pattern: Pattern, path: Path, *, style: str = "") -> None:
         f"{re.sub(r'[^A-Za-z0-9_-]', '_', panel.name)}_{number}"
         for number, panel in enumerate(pattern.panels, start=1)
     ]
-    tags: list[Tag] = [*_section("HEADER", [(9, "$ACADVER"), (1, "AC1009")])]
+    tags: list[Tag] = [*_section("HEADER", [])]
     blocks = zip(names, pattern.panels, strict=True)
     tags += _section("BLOCKS", (tag for name, panel in blocks for tag in _block(name, panel)))
     tags += _section("ENTITIES", _sheet(names, pattern, style or path.stem))

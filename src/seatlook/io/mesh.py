@@ -15,9 +15,11 @@ from seatlook.io._schema import shown
 from seatlook.io._toml import read_file
 from seatlook.io.curves import read_curves
 from seatlook.io.surface import METRES, Unit, check_size
-from seatlook.model import Foam, FoamMaterial
+from seatlook.model import FloatArray, Foam, FoamMaterial, IntArray
 
 Up = Literal["z", "y"]
+
+MERGE_M = 1e-7  # STL repeats each corner in every face, rounded to 4 bytes
 
 
 def read_foam(
@@ -44,13 +46,14 @@ def read_foam(
         agree on a side, or its largest extent is not within 0.05 to 3 m. A closed surface whose
         faces all look inward is turned.
     """
-    mesh = _load(path)
-    vertices = METRES[unit] * np.asarray(mesh.vertices, dtype=np.float64)
+    vertices, faces = _load(path)
+    vertices = METRES[unit] * vertices
+    check_size(path, vertices, unit)
     if up == "y":
         vertices = vertices[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
-    faces = np.asarray(mesh.faces, dtype=np.int64)
+    vertices, faces = _merged(vertices, faces)
+    mesh = trimesh.Trimesh(vertices=vertices, faces=faces, process=False)
     _check_closed(path, mesh)
-    check_size(path, vertices, unit)
     if mesh.volume < 0:
         faces = faces[:, ::-1]
     return Foam(
@@ -61,8 +64,8 @@ def read_foam(
     )
 
 
-def _load(path: Path) -> Any:
-    """Load a mesh, its nan refused and its equal vertices merged."""
+def _load(path: Path) -> tuple[FloatArray, IntArray]:
+    """Load vertices (n, 3) in the file's unit and faces (m, 3), all finite and in range."""
     content = read_file(path)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
@@ -74,20 +77,30 @@ def _load(path: Path) -> Any:
         raise _refusal(path, f"{type(error).__name__}: {error}") from error
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
         raise _refusal(path, f"no faces in {len(content)} bytes")
-    bad = np.flatnonzero(~np.isfinite(mesh.vertices).all(axis=1))
+    vertices = np.array(mesh.vertices, dtype=np.float64)
+    faces = np.array(mesh.faces, dtype=np.int64)
+    if vertices.shape[1:] != (3,):
+        raise _refusal(path, f"vertices of {vertices.shape[1]} coordinates")
+    bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
     if len(bad):
         raise InputError.single(
             f"vertex {bad[0] + 1}",
-            got=f"{mesh.vertices[bad[0]].tolist()} ({len(bad)} such vertices)",
+            got=f"{vertices[bad[0]].tolist()} ({len(bad)} such vertices)",
             expected="finite coordinates",
             file=path,
         )
-    mesh.merge_vertices(merge_tex=True, merge_norm=True)
-    # An edge of no length leaves a face that touches itself; its neighbours still close.
-    a, b, c = mesh.faces.T
-    mesh.update_faces((a != b) & (b != c) & (c != a))
-    mesh.remove_unreferenced_vertices()
-    return mesh
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise _refusal(path, f"a face with vertex {faces.max() + 1} of {len(vertices)}")
+    return vertices[np.unique(faces)], np.unique(faces, return_inverse=True)[1].reshape(-1, 3)
+
+
+def _merged(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    """Merge vertices that agree within MERGE_M and drop the faces this leaves without area."""
+    cells = np.round(vertices / MERGE_M).astype(np.int64)
+    _, first, index = np.unique(cells, axis=0, return_index=True, return_inverse=True)
+    faces = index.reshape(-1)[faces]
+    a, b, c = faces.T
+    return vertices[first], faces[(a != b) & (b != c) & (c != a)]
 
 
 def _load_with_trimesh(path: Path) -> Any:
