@@ -143,25 +143,6 @@ def test_without_a_gl_library_it_ends_with_3_before_any_work(command, demo_scene
     assert not (tmp_path / "out").exists()
 
 
-@pytest.fixture(scope="session")
-def demo_scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Write the demo's files, spoiled, on a coarse mesh."""
-    from seatlook.cli._demo import write_demo
-
-    folder = tmp_path_factory.mktemp("demo")
-    write_demo(
-        folder,
-        ease={},
-        starve={"REAR": 0.01},
-        material="leather-laminate",
-        insert="suede-laminate",
-        element_size_mm=25.0,
-        seed=3,
-        surface_size=0.02,
-    )
-    return folder / "scene.toml"
-
-
 def test_the_demo_scene_is_complete_and_says_what_is_spoiled(demo_scene):
     from seatlook import io
 
@@ -180,7 +161,7 @@ def test_check_tells_what_would_be_solved(demo_scene, capsys):
     assert run(["check", str(demo_scene), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert (found["panels"], found["seams"], found["hooks_and_frames"]) == (7, 14, 6)
-    assert found["element_size_mm"] == pytest.approx(25, rel=0.15)
+    assert found["element_size_mm"] == pytest.approx(30, rel=0.15)
     ratio = found["wavelength_mm"] / found["element_size_mm"]
     assert found["wavelength_over_element_size"] == pytest.approx(ratio)
     assert run(["check", str(demo_scene), "--element-size-mm", "40"]) == 0
@@ -233,3 +214,66 @@ def test_an_interrupted_command_ends_with_130_and_leaves_nothing_half_written(tm
     assert process.returncode == 130
     assert errors == "interrupted; no file was left half written\n"
     assert [p for p in tmp_path.rglob(".*") if p.is_file()] == []
+
+
+@pytest.fixture(scope="module")
+def evaluated(demo_scene: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Evaluate the coarse demo once; one of its two limits cannot be kept."""
+    folder = tmp_path_factory.mktemp("evaluated")
+    for file in demo_scene.parent.iterdir():
+        (folder / file.name).write_bytes(file.read_bytes())
+    scene = folder / "scene.toml"
+    text = scene.read_text().replace('"driver_door", "top"]', '"top"]\nsize = [96, 54]')
+    text += '\n[accept."INSERT interior"]\nw2_mean = 1e-9\n[accept."REAR interior"]\nw2_mean = 50\n'
+    scene.write_text(
+        text.replace('["black-leather", "bright-leather", "suede"]', '["suede", "pvc"]')
+    )
+    done = seatlook("evaluate", "scene.toml", "--out", ".", cwd=folder)
+    (folder / "stdout").write_text(done.stdout)
+    (folder / "stderr").write_text(f"{done.returncode}\n{done.stderr}")
+    return folder
+
+
+@pytest.mark.render
+def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
+    code, gallery, missed = (evaluated / "stderr").read_text().splitlines()
+    assert code == "1"
+    assert missed.startswith("INSERT interior: w2_mean is ")
+    assert missed.endswith("the limit is 1e-09")
+    assert gallery == "gallery: index.html"
+    heads, *rows = (evaluated / "stdout").read_text().splitlines()
+    assert heads.split()[:3] == ["zone", "area", "w2_mean"]
+    assert any(row.startswith("INSERT interior") for row in rows)
+    assert len(list(evaluated.glob("images/*/*.png"))) == 6
+    assert len(list(evaluated.glob("maps/*.png"))) == 4
+    page = (evaluated / "index.html").read_text()
+    for part in ("suede under bulb left", "W_compression", "judgement", "texture pvc"):
+        assert part in page
+    assert '<td class="missed">NO</td>' in page
+    assert "coarser than an eighth" in page
+
+
+@pytest.mark.render
+def test_a_result_is_judged_and_drawn_again_without_solving(evaluated, tmp_path):
+    table = seatlook("wrinkle", "scene.toml", "result.npz", "--json", cwd=evaluated)
+    assert table.returncode == 0, table.stderr
+    zones = json.loads(table.stdout)
+    first = (evaluated / "stdout").read_text()
+    assert len(zones) == len(first.splitlines()) - 1
+    assert f"{zones[-1]['w2_mean']:.4g}" in first
+
+    words = ["render", "scene.toml", "result.npz", "--out", str(tmp_path), "--rig", "sun"]
+    done = seatlook(*words, "--texture", "suede", "--no-maps", cwd=evaluated)
+    assert done.returncode == 0, done.stderr
+    (again,) = tmp_path.rglob("*.png")
+    assert again.read_bytes() == (evaluated / "images/sun/suede.png").read_bytes()
+
+
+@pytest.mark.render
+def test_render_refuses_a_rig_the_scene_does_not_have(evaluated, tmp_path):
+    out = tmp_path / "out"
+    words = ["render", "scene.toml", "result.npz", "--out", str(out), "--rig", "son"]
+    done = seatlook(*words, cwd=evaluated)
+    assert done.returncode == 2
+    assert "--rig: got 'son', expected one of sun, bulb left, bulb right" in done.stderr
+    assert not out.exists()

@@ -8,9 +8,34 @@ from typing import Any
 __version__ = "0.1.0"
 
 # name -> module; loaded on first use, so that "seatlook --help" stays light.
-_PUBLIC: dict[str, str] = {}
+_PUBLIC: dict[str, str] = {
+    "Camera": "seatlook.model",
+    "Cover": "seatlook.model",
+    "Evaluation": "seatlook.evaluate",
+    "InputError": "seatlook.errors",
+    "Rig": "seatlook.model",
+    "Scene": "seatlook.model",
+    "SeatlookError": "seatlook.errors",
+    "Solution": "seatlook.model",
+    "WrinkleMap": "seatlook.model",
+    "assemble": "seatlook.assembly",
+    "bulb": "seatlook.model",
+    "load_scene": "seatlook.io",
+    "named_view": "seatlook.model",
+    "read_material": "seatlook.io",
+    "read_result": "seatlook.io",
+    "render": "seatlook.pbr",
+    "render_map": "seatlook.pbr",
+    "solve": "seatlook.solver",
+    "sun": "seatlook.model",
+    "surface_strains": "seatlook.wrinkle",
+    "wrinkle_indices": "seatlook.wrinkle",
+    "write_report": "seatlook.report.gather",
+    "write_result": "seatlook.io",
+    "zone_table": "seatlook.wrinkle",
+}
 
-__all__ = sorted(_PUBLIC)
+__all__ = list(_PUBLIC)
 
 
 def __getattr__(name: str) -> Any:

@@ -1,0 +1,26 @@
+"""Fixtures that several rooms share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def demo_scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the demo's files, spoiled, on a coarse mesh; return its scene file."""
+    from seatlook.cli._demo import write_demo
+
+    folder = tmp_path_factory.mktemp("demo")
+    write_demo(
+        folder,
+        ease={},
+        starve={"REAR": 0.01},
+        material="leather-laminate",
+        insert="suede-laminate",
+        element_size_mm=30.0,
+        seed=3,
+        surface_size=0.02,
+    )
+    return folder / "scene.toml"
