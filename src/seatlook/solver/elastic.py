@@ -61,7 +61,7 @@ class ElasticSheet:
         self.faces = faces
         self.edges = edges_of(rest, faces)
         self._panel, self._fabrics = panel, tuple(fabrics)
-        self._thickness = np.array([f.thickness for f in fabrics])[panel]
+        self.thickness = np.array([f.thickness for f in fabrics])[panel]
         density = np.array([f.density for f in fabrics])[panel]
         self.mass = np.bincount(
             faces.ravel(), np.repeat(density * self.area / 3.0, 3), minlength=len(rest)
@@ -102,7 +102,7 @@ class ElasticSheet:
         """Green strain on the top, mid and bottom surface, each (m, 2, 2) in warp/weft axes [1]."""
         x = np.array(x, dtype=np.float64, order="C")
         mid = _tensors(self.membrane.strain(x))
-        part = 0.5 * self._thickness[:, None, None] * self.curvatures(x)
+        part = 0.5 * self.thickness[:, None, None] * self.curvatures(x)
         return mid + part, mid, mid - part
 
     def _clamps(

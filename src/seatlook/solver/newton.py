@@ -86,8 +86,10 @@ class Potential:
     def hessian(self, x: FloatArray, *, definite: bool) -> csc_array:
         """Second derivative over the free positions."""
         terms = (*self.elastic, *self.others)
-        full = sum(term.hessian(x, definite=definite) for term in terms)
-        return csc_array(csc_array(full)[self._index][:, self._index])
+        full = csc_array((x.size, x.size))
+        for term in terms:
+            full = csc_array(full + term.hessian(x, definite=definite))
+        return csc_array(full[self._index][:, self._index])
 
     def spread(self, values: FloatArray) -> FloatArray:
         """Return an (n, 3) array with ``values`` at the free positions."""

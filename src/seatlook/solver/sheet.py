@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
 
 from seatlook.errors import InputError, SolverError
 from seatlook.model import Fabric, FloatArray, IntArray
@@ -14,6 +16,10 @@ from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.energy import Energy
 from seatlook.solver.loads import DeadLoad, Pressure
 from seatlook.solver.newton import Equilibrium, Potential, newton
+
+_PATIENCE = 30
+_SOFTENING = (1e-4, 1e-2)
+_KICK = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,26 +109,33 @@ def solve_sheet(
     >>> round(float(solved.sheet.strains(solved.positions)[1][0, 0, 0]), 4)
     0.0099
     """
-    start = np.pad(rest, ((0, 0), (0, 1))) if positions is None else np.array(positions, float)
+    start = np.pad(np.asarray(rest, dtype=np.float64), ((0, 0), (0, 1)))
+    if positions is not None:
+        start = np.array(positions, dtype=np.float64, order="C")
     held = _held(len(rest), fixed, clamped)
     sheet = ElasticSheet(
-        rest, faces, np.zeros(len(faces)), [fabric], clamped=clamped, positions=start
+        rest,
+        faces,
+        np.zeros(len(faces), dtype=np.int64),
+        [fabric],
+        clamped=clamped,
+        positions=start,
     )
     target = start if prescribed is None else np.where(held, prescribed, start)
-    force = sheet.mass[:, None] * np.asarray(gravity, dtype=np.float64)
-    force = force if loads is None else force + loads
-    x, found, kick = start, None, 0.5 * fabric.thickness
-    for step in range(1, steps + 1):
-        share = step / steps
-        others = [DeadLoad(share * force), *supports]
+    force = np.outer(sheet.mass, gravity)
+    if loads is not None:
+        force += loads
+    if steps < 1:
+        raise InputError.single("steps", got=steps, expected="1 or more")
+    x = start
+    for share in np.arange(1, steps + 1) / steps:
+        others: list[Energy] = [DeadLoad(share * force), *supports]
         if pressure:
             others.append(Pressure(sheet.faces, share * pressure))
         potential = Potential(sheet.energies, others, ~held)
         x = _moved(sheet, x, start + share * (target - start), held)
-        found = newton(potential, x, tolerance=tolerance, max_iterations=max_iterations, kick=kick)
+        found = _equilibrium(sheet, potential, x, tolerance, max_iterations)
         x = found.x
-    if found is None:
-        raise InputError.single("steps", got=steps, expected="1 or more")
     solution = _report(sheet, found, potential, tolerance)
     if strict and not solution.converged:
         raise SheetError(solution.reason, solution)
@@ -145,12 +158,54 @@ def _held(
     return held
 
 
+class _Softened:
+    """An energy times a factor."""
+
+    def __init__(self, energy: Energy, factor: float) -> None:
+        self._energy, self._factor = energy, factor
+
+    def value(self, x: FloatArray, gradient: FloatArray) -> float:
+        part = np.zeros_like(x)
+        energy = self._energy.value(x, part)
+        gradient += self._factor * part
+        return self._factor * energy
+
+    def stiffness(self) -> csc_array | None:
+        matrix = self._energy.stiffness()
+        return None if matrix is None else csc_array(self._factor * matrix)
+
+    def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
+        return csc_array(self._factor * self._energy.hessian(x, definite=definite))
+
+
+def _equilibrium(
+    sheet: ElasticSheet,
+    potential: Potential,
+    x: FloatArray,
+    tolerance: float,
+    max_iterations: int,
+) -> Equilibrium:
+    """Newton's method; where a stiff membrane makes it crawl, first with a softer one.
+
+    A thin sheet swings along arcs that Newton's straight steps stretch, so the line search allows
+    only short ones. A softer membrane lets it swing; its shape is close to the right one.
+    """
+    kick = _KICK * sheet.thickness.max()
+    few = min(_PATIENCE, max_iterations)
+    direct = newton(potential, x, max_iterations=few, tolerance=tolerance, kick=kick)
+    if direct.residual <= tolerance and direct.stable:
+        return direct
+    for factor in _SOFTENING:
+        soft = (_Softened(sheet.membrane, factor), sheet.bending)
+        eased = Potential(soft, potential.others, potential.free)
+        x = newton(eased, x, max_iterations=max_iterations, tolerance=1e-2, kick=kick).x
+    return newton(potential, x, max_iterations=max_iterations, tolerance=tolerance, kick=kick)
+
+
 def _moved(
     sheet: ElasticSheet, x: FloatArray, target: FloatArray, held: npt.NDArray[np.bool_]
 ) -> FloatArray:
     """Take held components to ``target``; the free ones follow as a soap film would."""
-    from scipy.sparse.linalg import splu
-
     move = np.where(held, target - x, 0.0)
     if not move.any():
         return x
