@@ -1,3 +1,4 @@
+import dataclasses
 import re
 import shutil
 from pathlib import Path
@@ -8,6 +9,8 @@ import pytest
 from seatlook.io.curves import write_curves
 from seatlook.io.scene import load_scene
 from seatlook.io.surface import write_obj
+from seatlook.model.scene import MEASURES
+from seatlook.wrinkle import ZoneRow
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "scene.md").read_text(), re.DOTALL)[0]
@@ -324,3 +327,7 @@ def test_panel_without_material(refused):
 def test_bad_values(refused, old, new, message):
     got, _ = refused((old, new))
     assert [re.sub(r"^scene\.toml:\d+: ", "", g) for g in got] == [message]
+
+
+def test_limits_name_figures_of_the_zone_table():
+    assert set(MEASURES) <= {f.name for f in dataclasses.fields(ZoneRow)}

@@ -82,7 +82,8 @@ def read_dxf(
         scale = _scale(path, titles, units)
         blocks = _blocks(path, document, titles, size)
         return _panels(path, blocks, scale)
-    except DXFError as error:  # an entity without the values it must have
+    # An entity without the values it must have; the library gives None for some.
+    except (DXFError, AttributeError, TypeError) as error:
         raise _refusal(path, error) from error
 
 
