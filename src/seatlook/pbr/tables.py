@@ -11,8 +11,8 @@ from seatlook.model import FloatArray
 from seatlook.pbr.kernels.brdf import ROUGHNESS_LOW, Tables
 
 _FILE = Path(__file__).with_name("tables.npz")
-ROUGHNESSES = 32
-COSINES = 40
+ROUGHNESSES = 80
+COSINES = 56
 
 
 @functools.cache
@@ -23,7 +23,7 @@ def load_tables() -> Tables:
 
 
 def compute_tables(grid: int = 256) -> Tables:
-    """Integrate all lobes anew with ``grid`` x ``grid`` directions per node; 256 takes 10 s.
+    """Integrate all lobes anew with ``grid`` x ``grid`` directions per node; 256 takes 40 s.
 
     ``numpy.savez_compressed(file, **compute_tables()._asdict())`` writes the shipped file.
     """
