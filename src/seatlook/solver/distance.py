@@ -12,6 +12,7 @@ from seatlook.model import FloatArray, IntArray
 from seatlook.solver.kernels import distance as kernel
 
 _BAND = 2.0  # cells around the surface whose distance is searched over all faces
+_PASSES = 3  # over the nodes further away, each trying its neighbours' nearest faces
 _MAX_NODES = 6_000_000
 
 
@@ -79,7 +80,8 @@ def distance_field(
     band = np.where(far, -1, nearest)
     index = ndimage.distance_transform_edt(far, return_distances=False, return_indices=True)
     nearest = np.ascontiguousarray(nearest[tuple(index)])
-    kernel.improve(vertices, faces, grid, distance2, nearest, band)
+    for _ in range(_PASSES):
+        kernel.improve(vertices, faces, grid, distance2, nearest, band)
     phi = np.sqrt(distance2) * np.where(_inside(vertices, faces, grid, shape), -1.0, 1.0)
     return DistanceField(ndimage.spline_filter(phi, order=3, mode="mirror"), grid)
 

@@ -15,6 +15,9 @@ from seatlook.solver.energy import Energy
 from seatlook.solver.kernels import lbfgs as kernel
 
 
+_SHORTEST = 1e-10  # part of the full step; shorter ones are lost in rounding
+
+
 class Potential:
     """Sum of energies."""
 
@@ -127,8 +130,7 @@ class Lbfgs:
                 continue
             kept = self._remember(x, kept)
             value = new
-        stalled = False
-        return Descent(value, iterations, evaluations, stalled=stalled)
+        return Descent(value, iterations, evaluations, stalled=False)
 
     def _turn(self, factor: Factor, kept: int) -> None:
         """Two-loop recursion over the last ``min(kept, memory)`` pairs."""
@@ -144,7 +146,9 @@ class Lbfgs:
         """Backtrack by parabolas until Armijo's rule holds; leaves the trial point and gradient."""
         longest = kernel.largest_row(self._direction)
         step = min(1.0, self.step_cap / longest) if longest > 0 else 0.0
-        for tries in range(1, 31):
+        tries = 0
+        while step > _SHORTEST:
+            tries += 1
             kernel.add_scaled(x, step, self._direction, self._trial)
             new = potential.value(self._trial, self._trial_gradient)
             if new <= value + self.ARMIJO * step * slope:
@@ -154,7 +158,7 @@ class Lbfgs:
                 step *= 0.1
             else:
                 step *= min(max(-0.5 * step * slope / excess, 0.1), 0.5)
-        return None, 30
+        return None, tries
 
     def _remember(self, x: FloatArray, kept: int) -> int:
         """Store the accepted pair, move ``x`` there; a pair without positive curvature is left."""

@@ -14,9 +14,9 @@ from seatlook.errors import ConvergenceError, InputError
 from seatlook.model import Cover, Solution
 from seatlook.solver.process import Process, Record
 from seatlook.solver.stages import Step, check_stages, schedule
-from seatlook.solver.verdict import figures, reasons
+from seatlook.solver.verdict import figures, reasons, unrest
 
-_SETTLE = "settle"
+_REST = "at rest"
 _ROUNDS = 40  # of settling, each with the inertia of a time step twice as long
 _REST_ITERATIONS = 300  # of one round
 _MOST_ITERATIONS = 6000  # of all rounds
@@ -88,7 +88,7 @@ def solve(
         if last and snapshot is not None:
             snapshot(run.solution(step.stage, ["settling has not been done"]))
     run.settle()
-    solution = run.solution(_SETTLE, reasons(process, run.records[-1]))
+    solution = run.solution(_REST, reasons(process, run.records[-1]))
     if strict and solution.status != "converged":
         raise ConvergenceError(solution.reason, solution)
     return solution
@@ -127,10 +127,10 @@ class _Run:
         for _ in range(_ROUNDS):
             left = min(_REST_ITERATIONS, _MOST_ITERATIONS - spent)
             record = process.settle(dt, record, left)
-            self.add(_SETTLE, record)
+            self.add(_REST, record)
             spent += record.iterations
             dt *= 2.0
-            if not reasons(process, record) or spent >= _MOST_ITERATIONS:
+            if not unrest(process, record) or spent >= _MOST_ITERATIONS:
                 return
 
     def solution(self, stage: str, why: list[str]) -> Solution:
@@ -166,7 +166,7 @@ class _Run:
 
 def _after(plan: list[Step], start: Solution, cover: Cover) -> list[Step]:
     """Steps after the stage at whose end ``start`` was taken."""
-    if start.stage == _SETTLE:
+    if start.stage == _REST:
         return []
     done = [i for i, step in enumerate(plan) if step.stage == start.stage]
     if not done:

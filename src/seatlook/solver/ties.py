@@ -14,6 +14,7 @@ from seatlook.solver.kernels import ties as kernel
 
 Kind = Literal["seam", "hook", "frame"]
 _STIFFER = 100.0  # than a strip of fabric one element long: a softer tie lets a buckled edge flip
+_SMALL_GAP = 5e-5  # m, that needs no multiplier
 # A tie closes by pulling ever harder; only when closed does it reach its full stiffness.
 _PROGRESS, _SHARE = (0.0, 1.0, 1.4), (1e-5, 1e-2, 1.0)
 
@@ -120,9 +121,14 @@ class Ties:
         return result
 
     def update(self, x: FloatArray) -> None:
-        """One step of the augmented Lagrangian: the multipliers of closed ties take the force."""
-        closed = (self.stiff > 0.0) & (self.target == self.goal).all(axis=1)
-        self.multiplier += np.where(closed, self.stiff, 0.0)[:, None] * self.gap(x)
+        """One step of the augmented Lagrangian: multipliers take the force where a gap is left.
+
+        Points that cannot all reach their targets (more of them than vertices) would make the
+        multipliers grow for ever, so a gap that is small enough is left to the spring.
+        """
+        gap = self.gap(x)
+        closed = (self.target == self.goal).all(axis=1) & (np.abs(gap).max(axis=1) > _SMALL_GAP)
+        self.multiplier += np.where(closed, self.stiff, 0.0)[:, None] * gap
 
     def force(self, x: FloatArray) -> FloatArray:
         """Pull of every row on its first side, (s, 3) [N]: minus spring and multiplier."""

@@ -19,13 +19,21 @@ _COLLAPSED = 1e-3  # of the rest area
 
 
 def reasons(process: Process, record: Record) -> list[str]:
-    """What keeps a state from being converged; empty when nothing does.
+    """What keeps a result from being believed; empty when nothing does.
 
     Raises
     ------
     InvertedElementError   a triangle has lost its area
     """
     _check_faces(process)
+    found = unrest(process, record)
+    if process.contact is not None:
+        found += _contact_reasons(process, process.contact)
+    return found
+
+
+def unrest(process: Process, record: Record) -> list[str]:
+    """What more settling may cure: forces out of balance, movement, gaps."""
     found = []
     if not record.residual <= RESIDUAL:
         found.append(f"out-of-balance force {record.residual:.2g} of the mean elastic force")
@@ -37,8 +45,6 @@ def reasons(process: Process, record: Record) -> list[str]:
         gap = process.ties.largest_gap(process.x, kind)
         if gap >= ANCHOR_GAP:
             found.append(f"a {kind} is off by {1e3 * gap:.2g} mm")
-    if process.contact is not None:
-        found += _contact_reasons(process, process.contact)
     return found
 
 
