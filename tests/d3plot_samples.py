@@ -52,7 +52,8 @@ def d3plot(
     values = {
         11: 1, 15: 3 if rigid_part is None else 5, 16: n, 17: 6, 18: globals_, 20: 1,
         21: int(velocity), 23: solids, 24: 1 if solids else 0, 27: 7, 28: beams, 30: 6,
-        31: e, 32: parts, 33: width, 36: layers if deletion is None else -(10000 + layers), 39: narbs,
+        31: e, 32: parts, 33: width, 39: narbs,
+        36: layers if deletion is None else -(10000 + layers),
         43: 1000, 44: 1000, 45: 1000, 46: 1000 if thickness else 0, 51: parts,
     }  # fmt: skip
     for at, value in (values | (control or {})).items():

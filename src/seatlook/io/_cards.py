@@ -151,7 +151,7 @@ def blocks(file: Path, content: bytes) -> Iterator[Block]:
 
 def _keyword(raw: bytes, deck_width: int) -> tuple[str, int]:
     """Return the name and the width that its ending (+ long, - standard, % I10) or LONG=Y asks."""
-    head, *options = raw[1:].decode("latin-1").upper().split()
+    head, *options = raw[1:].decode("latin-1").upper().split() or [" "]
     switches = {"+": LONG_WIDTH, "-": 0, "%": 10}
     width = deck_width
     if head[-1] in switches:

@@ -87,8 +87,8 @@ def _to_surfaces(
             line=block.line,
         )  # fmt: skip
     middle = np.stack([np.bincount(row, c, e) for c in six.T], axis=1) / n[:, None]
-    slope = np.stack([np.bincount(row, c * off, e) for c in six.T], axis=1)
-    slope /= np.where(there, spread, 1.0)[:, None]
+    moment = np.stack([np.bincount(row, c * off, e) for c in six.T], axis=1)
+    slope = moment / np.where(there, spread, 1.0)[:, None]
     return middle + slope * (-1.0 - mean)[:, None], middle + slope * (1.0 - mean)[:, None]
 
 

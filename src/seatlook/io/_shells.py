@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.errors import InputError
+from seatlook.errors import InputError, Problem
 from seatlook.model import FloatArray, IntArray, Shells
 
 LENGTH_UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254}
@@ -85,7 +85,7 @@ def _of_parts(
     numbers = {title.casefold(): number for number, title in titles.items()}
     there = {int(p) for p in np.unique(part)}
     known = ", ".join(f"{p} {titles[p]!r}" if titles.get(p) else str(p) for p in sorted(there)[:20])
-    problems = []
+    problems: list[Problem] = []
     chosen = set()
     for name in wanted:
         number = int(name) if str(name).isdecimal() else numbers.get(str(name).casefold())

@@ -11,13 +11,14 @@ from seatlook.wrinkle.equations import (
     wrinkle_index,
     wrinkle_indices,
 )
-from seatlook.wrinkle.zone import ZoneRow, zone_table
+from seatlook.wrinkle.zone import ZoneRow, quantile, zone_table
 
 __all__ = [
     "ZoneRow",
     "compression_wrinkle",
     "curvature_index",
     "curvature_tensor",
+    "quantile",
     "relative_curvature",
     "stretch_ratio",
     "stretch_wrinkle",

@@ -45,7 +45,7 @@ def zone_table(solution: Solution, indices: WrinkleMap) -> tuple[ZoneRow, ...]:
                 zone=name,
                 area=float(weight.sum()),
                 w2_mean=_mean(w2, weight),
-                w2_p95=_weighted_quantile(w2, weight, 0.95),
+                w2_p95=quantile(w2, weight, 0.95),
                 w2_area_share=_mean((w2 > 1).astype(float), weight),
                 w_stretch_mean=_mean(indices.w_stretch[inside], weight),
                 w_compression_mean=_mean(indices.w_compression[inside], weight),
@@ -58,8 +58,14 @@ def _mean(values: FloatArray, weight: FloatArray) -> float:
     return float(values @ weight / weight.sum())
 
 
-def _weighted_quantile(values: FloatArray, weight: FloatArray, share: float) -> float:
-    """Return the smallest value with at least ``share`` of the weight at or below it."""
+def quantile(values: FloatArray, weight: FloatArray, share: float) -> float:
+    """Return the smallest value with at least ``share`` of the weight at or below it.
+
+    Examples
+    --------
+    >>> quantile(np.array([5.0, 0.0, 1.0]), np.array([0.02, 0.9, 0.08]), 0.95)
+    1.0
+    """
     order = np.argsort(values, kind="stable")
     reached = np.cumsum(weight[order]) / weight.sum()
     return float(values[order][min(int(np.searchsorted(reached, share)), len(values) - 1)])
