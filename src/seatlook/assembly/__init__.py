@@ -1,0 +1,125 @@
+"""Pattern + foam + materials -> Cover: mesh the panels, pose them, say what pulls on what."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatlook import mesh
+from seatlook.assembly.builder import Builder
+from seatlook.errors import AssemblyError, Problem
+from seatlook.model import Cover, FloatArray, Hook, IntArray, Panel, Scene
+from seatlook.zones import zones
+
+
+def assemble(scene: Scene, *, element_size: float | None = None, seed: int | None = None) -> Cover:
+    """Mesh and place all panels of a scene and pair up what is sewn, hooked and framed.
+
+    Parameters
+    ----------
+    scene : Scene
+    element_size : float [m], optional      overrides the scene's
+    seed : int, optional                    overrides the scene's; drives mesh and imperfection
+
+    Returns
+    -------
+    Cover
+        Panels in the pattern's order, ready for ``solve``.
+
+    Raises
+    ------
+    AssemblyError
+        A panel without material or pose, or parts that do not fit each other; all of them at once.
+    InputError
+        A panel that cannot be meshed at this element size.
+    """
+    _check_panels(scene)
+    h = scene.element_size if element_size is None else element_size
+    seed = scene.seed if seed is None else seed
+    panels = scene.pattern.panels
+    builder = Builder(scene.pattern, h)
+    for i, panel in enumerate(panels):
+        builder.add(panel, _hooked_lines(scene.hooks, panel), seed=1000 * seed + i)
+    uv, faces, owner = builder.arrays()
+    placed = _placed(uv, owner, scene)
+    zone, zone_names = zones(
+        uv[faces].mean(axis=1), owner[faces[:, 0]], scene.pattern, boxes=scene.boxes
+    )
+    return Cover(
+        rest=_along_grain(uv, owner, panels),
+        uv=uv,
+        positions=placed + _imperfection(uv, owner, scene, shortest=2 * h, seed=seed),
+        faces=faces,
+        panel=owner[faces[:, 0]],
+        panel_names=tuple(p.name for p in panels),
+        materials=tuple(scene.materials[p.name] for p in panels),
+        zone=zone,
+        zone_names=zone_names,
+        stitchings=tuple(builder.stitching(s, scene.stages[0]) for s in scene.pattern.seams),
+        anchors=(
+            *(builder.hook(hook, scene, placed) for hook in scene.hooks),
+            *(builder.frame(frame, scene, placed) for frame in scene.frames),
+        ),
+        stages=scene.stages,
+        foam=scene.foam,
+        element_size=float(mesh.edge_lengths(uv, faces).mean()),
+        seed=seed,
+        scene_digest=scene.digest,
+    )
+
+
+def _check_panels(scene: Scene) -> None:
+    """Refuse panels without material or pose, all named at once."""
+    problems = [
+        Problem(key=f"{key}.{panel.name}", got="nothing", expected=expected, file=scene.path)
+        for panel in scene.pattern.panels
+        for key, table, expected in (
+            ("panel", scene.materials, "a material"),
+            ("placement", scene.placement, "a pose (rotation, translation_mm)"),
+        )
+        if panel.name not in table
+    ]
+    if problems:
+        raise AssemblyError(problems)
+
+
+def _placed(uv: FloatArray, owner: IntArray, scene: Scene) -> FloatArray:
+    """Positions (n, 3) [m] of all vertices before sewing, each panel flat."""
+    poses = [scene.placement[p.name] for p in scene.pattern.panels]
+    axes = np.stack([pose.rotation[:, :2] for pose in poses])
+    origin = np.stack([pose.translation for pose in poses])
+    return np.asarray(np.einsum("nij,nj->ni", axes[owner], uv) + origin[owner])
+
+
+def _along_grain(uv: FloatArray, owner: IntArray, panels: Sequence[Panel]) -> FloatArray:
+    """Turn pattern coordinates (n, 2) so that the first axis runs along the warp."""
+    warp = np.stack([p.grain / np.hypot(*p.grain) for p in panels])[owner]
+    weft = np.column_stack([-warp[:, 1], warp[:, 0]])
+    return np.column_stack([(uv * warp).sum(axis=1), (uv * weft).sum(axis=1)])
+
+
+def _imperfection(
+    uv: FloatArray, owner: IntArray, scene: Scene, *, shortest: float, seed: int
+) -> FloatArray:
+    """Offset (n, 3) [m] along the panels' normals, rms 0.3 t: a flat sheet never buckles."""
+    names = [p.name for p in scene.pattern.panels]
+    thickness = np.array([scene.materials[name].fabric.thickness for name in names])
+    normal = np.stack([scene.placement[name].rotation[:, 2] for name in names])
+    height = 0.3 * thickness[owner] * _noise(uv, shortest, seed)
+    return np.asarray(height[:, None] * normal[owner])
+
+
+def _noise(uv: FloatArray, shortest: float, seed: int) -> FloatArray:
+    """Random smooth field (n,) of rms 1, wavelengths from ``shortest`` [m] to four times that."""
+    rng = np.random.default_rng(seed)
+    wavelength = shortest * 4.0 ** rng.random(64)
+    angle, phase = 2 * np.pi * rng.random((2, 64))
+    k = 2 * np.pi / wavelength * np.stack([np.cos(angle), np.sin(angle)])
+    return np.asarray(np.cos(uv @ k + phase).sum(axis=1) / np.sqrt(32.0))
+
+
+def _hooked_lines(hooks: Sequence[Hook], panel: Panel) -> dict[str, FloatArray]:
+    """Internal lines of a panel that a hook pulls on; only these must be mesh edges."""
+    names = {f"{panel.name}/{line}": line for line in panel.internal_lines}
+    return {h.line: panel.internal_lines[names[h.line]] for h in hooks if h.line in names}

@@ -1,0 +1,145 @@
+"""Meshes of all panels, and the lines of mesh vertices that are sewn, hooked and framed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatlook import mesh
+from seatlook.assembly.lines import Line, anchor_on, curve_of, join, line_through, stitches
+from seatlook.model import (
+    Anchor,
+    FloatArray,
+    Frame,
+    Hook,
+    IntArray,
+    Panel,
+    Pattern,
+    Scene,
+    Seam,
+    Stage,
+    Stitching,
+)
+
+CORNER = np.radians(25.0)  # an outline that turns more than this keeps its vertex
+
+
+class Builder:
+    """Collects the panels' meshes and finds vertex lines in them."""
+
+    def __init__(self, pattern: Pattern, element_size: float) -> None:
+        self.pattern = pattern
+        self.h = element_size
+        self._points: list[FloatArray] = []
+        self._faces: list[IntArray] = []
+        self._boundary: dict[str, dict[int, int]] = {}  # panel -> outline vertex -> mesh vertex
+        self._loop: dict[str, IntArray] = {}
+        self._lines: dict[str, Line] = {}
+
+    def add(self, panel: Panel, lines: dict[str, FloatArray], *, seed: int) -> None:
+        """Mesh one panel; boundary vertices lie at equal arc lengths between kept corners."""
+        stops = self._stops(panel)
+        n = len(panel.outline)
+        sampled, kept = [], {}
+        count = 0
+        for start, end in zip(stops, [*stops[1:], stops[0] + n], strict=True):
+            span = panel.outline[np.arange(start, end + 1) % n]
+            points = mesh.resample(span, self.h)
+            kept[start] = count
+            sampled.append(points[:-1])
+            count += len(points) - 1
+        inner = [mesh.resample(line, self.h) for line in lines.values()]
+        points, faces = mesh.triangulate(np.concatenate(sampled), self.h, lines=inner, seed=seed)
+        offset = sum(map(len, self._points))
+        self._points.append(points)
+        self._faces.append(faces + offset)
+        self._boundary[panel.name] = {k: v + offset for k, v in kept.items()}
+        self._loop[panel.name] = offset + np.arange(count)
+        for name, line in zip(lines, inner, strict=True):
+            nearest = np.linalg.norm(points[:, None] - line, axis=2).argmin(axis=0)
+            self._lines[name] = line_through(points, nearest, offset)
+
+    def _stops(self, panel: Panel) -> list[int]:
+        """Outline vertices that stay mesh vertices: ends of named edges and sharp corners."""
+        mine = [e for e in self.pattern.edges.values() if e.panel == panel.name]
+        ends = sorted({k for e in mine for k in (e.start, e.end)})
+        outline = panel.outline
+        ahead = np.roll(outline, -1, axis=0) - outline
+        behind = outline - np.roll(outline, 1, axis=0)
+        cross = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+        turn = np.abs(np.arctan2(cross, (behind * ahead).sum(axis=1)))
+        stops = list(ends)
+        for k in panel.corners:
+            near = stops and np.linalg.norm(outline[stops] - outline[k], axis=1).min() < self.h / 2
+            if turn[k] > CORNER and not near:
+                stops.append(int(k))
+        return sorted(stops) or [int(np.argmax(turn))]
+
+    def arrays(self) -> tuple[FloatArray, IntArray, IntArray]:
+        """Return uv (n, 2), faces (m, 3) and the panel of each vertex (n,)."""
+        owner = np.repeat(np.arange(len(self._points)), [len(p) for p in self._points])
+        return np.concatenate(self._points), np.concatenate(self._faces), owner
+
+    def edge(self, name: str) -> Line:
+        """Vertices along a named edge, in outline order."""
+        edge = self.pattern.edges[name]
+        loop, kept = self._loop[edge.panel], self._boundary[edge.panel]
+        first, last = kept[edge.start] - loop[0], kept[edge.end] - loop[0]
+        count = (last - first) % len(loop) or len(loop)
+        vertices = loop[(first + np.arange(count + 1)) % len(loop)]
+        # Arc length of the drawn edge, not of its chords: both sides of a seam keep their scale.
+        return Line(vertices, np.linspace(0.0, self.pattern.edge_length(name), count + 1))
+
+    def chain(self, names: Sequence[str], *, reverse: bool = False) -> list[Line]:
+        """Edges one after the other, each turned round if ``reverse``."""
+        lines = [self.edge(name) for name in names]
+        if not reverse:
+            return lines
+        return [Line(ln.vertices[::-1], ln.length - ln.arc[::-1]) for ln in lines]
+
+    def stitching(self, seam: Seam, stage: Stage) -> Stitching:
+        """Pair points of both sides at equal shares of the seam's length.
+
+        There is at most one pair per segment of the coarser side: more would make the finer
+        side follow its chords and lock the seam against bending.
+        """
+        near, far = self.chain([seam.a]), self.chain(seam.b, reverse=seam.reverse)
+        a, b = [], []
+        weight = []
+        total_a, total_b = near[0].length, sum(ln.length for ln in far)
+        done = 0.0
+        for side in far:
+            share = side.length / total_b
+            span = share * total_a
+            pitch = max(seam.pitch, side.spacing, near[0].spacing * span / max(span, 1e-12))
+            at, length = stitches(share, total_a, pitch)
+            a.append(near[0].points(total_a * np.clip(done + at, 0.0, 1.0)))
+            b.append(side.points(at / share * side.length))
+            weight.append(length)
+            done += share
+        return Stitching(
+            name=seam.name, a=join(a), b=join(b), length=np.concatenate(weight), stage=stage.name
+        )
+
+    def hook(self, hook: Hook, scene: Scene, x: FloatArray) -> Anchor:
+        """Pull the near side of a seam, or an internal line, to its wire."""
+        seams = {s.name: s for s in self.pattern.seams}
+        line = self.edge(seams[hook.line].a) if hook.line in seams else self._lines[hook.line]
+        wire = scene.foam.curves[hook.wire]
+        return anchor_on(
+            [line], curve_of(wire), x, self.h, name=hook.name, kind="hook", stage=hook.stage
+        )
+
+    def frame(self, frame: Frame, scene: Scene, x: FloatArray) -> Anchor:
+        """Pull free edges to a curve below the foam."""
+        curve = curve_of(scene.foam.curves[frame.curve])
+        return anchor_on(
+            self.chain(frame.edges),
+            curve,
+            x,
+            self.h,
+            name=frame.name,
+            kind="frame",
+            stage=frame.stage,
+        )

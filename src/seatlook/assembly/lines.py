@@ -1,0 +1,103 @@
+"""Lines of mesh vertices, the points stitched on them, and the curves they are pulled to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from seatlook.model import Anchor, FloatArray, IntArray, Points
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A polyline of mesh vertices, in the order in which it is run through."""
+
+    vertices: IntArray
+    arc: FloatArray  # arc length at each vertex [m]
+
+    def points(self, at: FloatArray) -> Points:
+        """Points at arc lengths ``at`` (s,)."""
+        k = np.clip(np.searchsorted(self.arc, at, side="right") - 1, 0, len(self.arc) - 2)
+        w = np.clip((at - self.arc[k]) / (self.arc[k + 1] - self.arc[k]), 0.0, 1.0)
+        return Points(
+            vertices=np.column_stack([self.vertices[k], self.vertices[k + 1]]),
+            weights=np.column_stack([1.0 - w, w]),
+        )
+
+    @property
+    def length(self) -> float:
+        """Length of the line [m]."""
+        return float(self.arc[-1])
+
+    @property
+    def spacing(self) -> float:
+        """Mean distance of its vertices [m]."""
+        return self.length / (len(self.vertices) - 1)
+
+
+def line_through(points: FloatArray, vertices: IntArray, offset: int) -> Line:
+    """Return the line through mesh vertices, whose numbers start at ``offset``."""
+    steps = np.linalg.norm(np.diff(points[vertices], axis=0), axis=1)
+    return Line(vertices + offset, np.concatenate([[0.0], np.cumsum(steps)]))
+
+
+def stitches(share: float, total: float, pitch: float) -> tuple[FloatArray, FloatArray]:
+    """Stitch places in [0, share] (both ends and the middles between) and their lengths [m]."""
+    count = max(1, round(share * total / pitch))
+    middle = (np.arange(count) + 0.5) / count
+    at = share * np.concatenate([[0.0], middle, [1.0]])
+    length = share * total / count * np.concatenate([[0.5], np.ones(count), [0.5]])
+    return at, length * count / (count + 1)
+
+
+def join(parts: Sequence[Points]) -> Points:
+    """Put points one after the other."""
+    return Points(
+        vertices=np.concatenate([p.vertices for p in parts]),
+        weights=np.concatenate([p.weights for p in parts]),
+    )
+
+
+def curve_of(points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Return the curve as a function of the share of its length in [0, 1]."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    arc = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+    return lambda s: np.column_stack([np.interp(s, arc, points[:, k]) for k in range(3)])
+
+
+def anchor_on(
+    lines: Sequence[Line],
+    curve: Callable[[FloatArray], FloatArray],
+    x: FloatArray,
+    h: float,
+    *,
+    name: str,
+    kind: Literal["hook", "frame"],
+    stage: str,
+) -> Anchor:
+    """Spread points over the lines and send each to its share of the curve, shorter way round."""
+    total = sum(ln.length for ln in lines)
+    parts, shares, lengths = [], [], []
+    done = 0.0
+    for line in lines:
+        at, length = stitches(line.length / total, total, max(h, line.spacing))
+        parts.append(line.points(at * total))
+        shares.append(done + at)
+        lengths.append(length)
+        done += line.length / total
+    points, share = join(parts), np.concatenate(shares)
+    start = points.at(x)
+    target, turned = curve(share), curve(1.0 - share)
+    if np.linalg.norm(turned - start) < np.linalg.norm(target - start):
+        target = turned
+    return Anchor(
+        name=name,
+        kind=kind,
+        points=points,
+        target=target,
+        length=np.concatenate(lengths),
+        stage=stage,
+    )
