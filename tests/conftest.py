@@ -19,7 +19,7 @@ def demo_scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
         starve={"REAR": 0.01},
         material="leather-laminate",
         insert="suede-laminate",
-        element_size_mm=30.0,
+        element_size_mm=20.0,
         seed=3,
         surface_size=0.02,
     )

@@ -161,7 +161,7 @@ def test_check_tells_what_would_be_solved(demo_scene, capsys):
     assert run(["check", str(demo_scene), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert (found["panels"], found["seams"], found["hooks_and_frames"]) == (7, 14, 6)
-    assert found["element_size_mm"] == pytest.approx(30, rel=0.15)
+    assert found["element_size_mm"] == pytest.approx(20, rel=0.15)
     ratio = found["wavelength_mm"] / found["element_size_mm"]
     assert found["wavelength_over_element_size"] == pytest.approx(ratio)
     assert run(["check", str(demo_scene), "--element-size-mm", "40"]) == 0
@@ -255,8 +255,14 @@ def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
 
 @pytest.mark.render
 def test_a_result_is_judged_and_drawn_again_without_solving(evaluated, tmp_path):
-    table = seatlook("wrinkle", "scene.toml", "result.npz", "--json", cwd=evaluated)
+    words = ["wrinkle", "scene.toml", "result.npz", "--json"]
+    exports = [tmp_path / "seat.vtp", tmp_path / "seat.csv"]
+    table = seatlook(*words, *(f"--export={path}" for path in exports), cwd=evaluated)
     assert table.returncode == 0, table.stderr
+    assert all(path.stat().st_size > 1000 for path in exports)
+    wrong = seatlook(*words, "--export", "seat.xyz", cwd=evaluated)
+    assert wrong.returncode == 2
+    assert "seat.xyz: file: got '.xyz', expected one of .vtp, .csv, .glb" in wrong.stderr
     zones = json.loads(table.stdout)
     first = (evaluated / "stdout").read_text()
     assert len(zones) == len(first.splitlines()) - 1

@@ -138,17 +138,34 @@ def solve(
     return _solved(solution)
 
 
-def wrinkle(scene: SceneFile, result: ResultFile, /, *, json: Json = False) -> None:
+def wrinkle(
+    scene: SceneFile,
+    result: ResultFile,
+    /,
+    *,
+    export: Annotated[tuple[Path, ...], Parameter(negative=())] = (),
+    json: Json = False,
+) -> None:
     """Print the wrinkle indices of a result, zone by zone; nothing is solved.
 
-    Example: seatlook wrinkle seat.toml seat.npz --json
+    Example: seatlook wrinkle seat.toml seat.npz --export seat.vtp
+
+    Parameters
+    ----------
+    export
+        File with strains and indices per element for other programs: .vtp, .csv or .glb. May be
+        given more than once.
     """
+    from seatlook import io
     from seatlook.evaluate import wrinkle_map
     from seatlook.wrinkle import zone_table
 
     read = load(scene)
     solution = _result(read, result)
-    _print_zones(zone_table(solution, wrinkle_map(read, solution)), json=json)
+    indices = wrinkle_map(read, solution)
+    for path in export:
+        io.export(solution, indices, path)
+    _print_zones(zone_table(solution, indices), json=json)
 
 
 def render(
