@@ -15,7 +15,7 @@ def rectangle(kind, length, width, h, *, seed=0):
     X = X * [length / nx, width / ny]
     if kind == "sliver":
         rng = np.random.default_rng(seed)
-        inside = (X > 1e-9).all(axis=1) & (X < np.array([length, width]) - 1e-9).all(axis=1)
+        inside = (X > 1e-9).all(axis=1) & (np.array([length, width]) - 1e-9 > X).all(axis=1)
         # Within a disc of 0.3 h no triangle turns over: angles down to about 5 degrees.
         r, phi = (
             0.3 * np.sqrt(rng.uniform(size=inside.sum())),

@@ -16,7 +16,6 @@ from seatlook.solver.edgeslope import areas, edges_of, slope_rows
 from seatlook.solver.energy import Energy
 from seatlook.solver.membrane import Membrane
 
-
 BoolArray = npt.NDArray[np.bool_]
 
 

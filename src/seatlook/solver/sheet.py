@@ -83,7 +83,7 @@ def solve_sheet(
     clamped : (n,) bool              fixed vertices between which free edges keep their direction
     prescribed : (n, 3) float64 [m]  where fixed components are taken to
     loads : (n, 3) float64 [N]       forces of constant direction
-    pressure : float [Pa]            along the face normals
+    pressure : float [Pa]            along the face normals; needs a rim that is held all round
     gravity : (3,) [m/s2]            acts on the fabric's mass
     supports : further energies, such as a foundation
     steps : loads and prescribed movements are applied in this many equal steps
@@ -125,6 +125,12 @@ def solve_sheet(
     force = np.outer(sheet.mass, gravity)
     if loads is not None:
         force += loads
+    rim = np.unique(sheet.edges.ends[sheet.edges.free])
+    loose = int((~held[rim]).any(axis=1).sum())
+    if pressure and loose:
+        raise InputError.single(
+            "pressure", got=f"{loose} rim vertices that can move", expected="a rim held all round"
+        )
     if steps < 1:
         raise InputError.single("steps", got=steps, expected="1 or more")
     x = start

@@ -1,0 +1,87 @@
+"""Linear out-of-plane behaviour of a flat sheet: false bending, buckling loads."""
+
+import numpy as np
+from scipy.sparse import diags_array
+from scipy.sparse.linalg import eigsh, spsolve
+
+import fabrics
+import meshes
+from seatlook.solver.elastic import ElasticSheet
+
+
+def normal_part(hessian):
+    """Rows and columns of the third axis."""
+    return hessian.tocsr()[2::3][:, 2::3]
+
+
+def flat(X):
+    return np.pad(X, ((0, 0), (0, 1)))
+
+
+def false_bending(kind, edges_per_wave, *, edges=48):
+    """c in B_num = c T h^2 of a wave across the tension, which should cost nothing."""
+    X, T = meshes.rectangle(kind, 1.0, 1.0, 1.0 / edges)
+    sheet = ElasticSheet(X, T, np.zeros(len(T)), [fabrics.isotropic()])
+    x = flat(X * [1.0, 1.001])
+    tension = sheet.membrane.stress(x)[0, 1]
+    K = normal_part(sheet.membrane.hessian(x))
+    h = sheet.edges.length.mean()
+    q = 2 * np.pi * edges / edges_per_wave
+    waves = [np.sin(q * X[:, 0] + phase) for phase in np.arange(4) * np.pi / 4]
+    energy = np.mean([w @ K @ w for w in waves])
+    return energy / (0.5 * q**4) / (tension * h**2)
+
+
+def winkler_load(kind, edges_per_wave, *, bed=2e6, bend=5e-5, waves=5):
+    """Buckling load of a sheet on springs [N/m3] over its exact value 2 sqrt(B K), minus 1."""
+    length = 2 * np.pi * (bend / bed) ** 0.25
+    X, T = meshes.rectangle(kind, waves * length, 2 * length, length / edges_per_wave)
+    sheet = ElasticSheet(X, T, np.zeros(len(T)), [fabrics.isotropic(bend=bend)])
+    x = flat(X * [1 - 1e-4, 1.0])
+    K = normal_part(sheet.membrane.hessian(x)) / sheet.membrane.stress(x)[0, 0]
+    springs = diags_array(sheet.mass / 0.3 * bed)
+    inner = np.flatnonzero((X[:, 0] > 1e-9) & (X[:, 0] < X[:, 0].max() - 1e-9))
+    stiff = (sheet.bending.stiffness() + springs).tocsc()[inner][:, inner]
+    top = eigsh(
+        K.tocsc()[inner][:, inner],
+        k=1,
+        M=stiff.tocsc(),
+        which="LA",
+        tol=1e-6,
+        return_eigenvectors=False,
+        v0=np.random.default_rng(0).standard_normal(len(inner)),
+    )
+    return 1 / top[0] / (2 * np.sqrt(bed * bend)) - 1
+
+
+def lateral_load(kind, slenderness, rows, *, poisson=0.3):
+    """(q L)_cr L^2 / sqrt(EI GJ) of a strip on edge under its own weight, clamped at one end."""
+    X, T = meshes.rectangle(kind, 1.0, slenderness, slenderness / rows)
+    clamped = X[:, 0] < 1e-9
+    fabric = fabrics.isotropic(12e6, 1.0, poisson, density=1.0)
+    sheet = ElasticSheet(X, T, np.zeros(len(T)), [fabric], clamped=clamped)
+    free = np.flatnonzero(~clamped)
+    inplane = np.sort(np.concatenate([3 * free, 3 * free + 1]))
+    x, weight = flat(X), 1e-3
+    force = np.zeros_like(x)
+    force[:, 1] = -weight * sheet.mass
+    sag = np.zeros(x.size)
+    H = sheet.membrane.hessian(x).tocsr()[inplane][:, inplane]
+    sag[inplane] = spsolve(H.tocsc(), force.ravel()[inplane])
+    sag = sag.reshape(-1, 3)
+    # The load's part of the Hessian, linear in the sag.
+    up, down = (normal_part(sheet.membrane.hessian(x + sign * sag)) for sign in (1, -1))
+    geometric = (0.5 * (up - down))[free][:, free].tocsc()
+    bending = sheet.bending.stiffness()[free][:, free].tocsc()
+    top = eigsh(
+        -geometric,
+        k=1,
+        M=bending,
+        which="LM",
+        tol=1e-6,
+        return_eigenvectors=False,
+        v0=np.random.default_rng(0).standard_normal(len(free)),
+    )
+    load = weight * slenderness / abs(top[0])
+    EI, GJ = (1 - poisson**2) * slenderness, 2 * (1 - poisson) * slenderness
+    return load / np.sqrt(EI * GJ)
