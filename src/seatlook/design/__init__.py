@@ -2,7 +2,7 @@
 
 from seatlook.design.cushion import Cushion
 from seatlook.design.demo import FoamMesh, demo_design, demo_foam_mesh
-from seatlook.design.flatten import Flattened, PanelStrain, SeamLengths, flatten
+from seatlook.design.flattening import Flattened, PanelStrain, SeamLengths, flatten
 from seatlook.design.surface import DesignSurface
 
 __all__ = [
