@@ -97,11 +97,11 @@ class FaceWindow:
         with _errors_raised():
             self._window.Render()
         picture = self._read(size)
-        ids = np.rint(picture[::-1, :, 0]).astype(np.int32) - 1
-        drawn = picture[::-1, :, 3] > 0
-        if (drawn != (ids >= 0)).any() or ids.max(initial=-1) >= len(faces):
+        number, drawn = picture[::-1, :, 0], picture[::-1, :, 3] > 0
+        whole = (number >= 0) & (number <= len(faces)) & (number == np.rint(number))
+        if not (whole & (drawn == (number > 0))).all():
             raise RenderError("the face shader did not run: the frame holds no face numbers")
-        return ids
+        return number.astype(np.int32) - 1
 
     def describe(self) -> str:
         """Return window class and GL renderer, for ``seatlook doctor``."""

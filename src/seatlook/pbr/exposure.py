@@ -111,4 +111,5 @@ def _dither(height: int, width: int) -> FloatArray:
     """Interleaved gradient noise in (0, 1), one value per pixel; Jimenez 2014."""
     x, y = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
     noise = np.modf(52.9829189 * np.modf(0.06711056 * x + 0.00583715 * y)[0])[0]
-    return np.asarray(noise[..., None])
+    # Short of both ends, so that white stays white where 255 comes out as 254.999.
+    return np.asarray(0.002 + 0.996 * noise[..., None])

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError, RenderError, did_you_mean
 from seatlook.model import Appearance, Camera, FloatArray, Light, Rig, Solution
+from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
 from seatlook.pbr.kernels import bvh, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
@@ -66,6 +67,7 @@ class Studio:
     """
 
     def __init__(self, solution: Solution) -> None:
+        offscreen_backend()
         self.solution = solution
         self.surface: Surface = drawn_surface(solution)
         self._bvh = bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)

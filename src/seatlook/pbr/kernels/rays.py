@@ -25,17 +25,23 @@ from seatlook.pbr.kernels.surface import (
 _ABOVE = 2e-5
 # Beyond this cosine not even the grain turns to the light.
 _TURNED = -0.15
+_LOW = np.uint64(0xFFFFFFFF)
+_PRIMES = (np.uint64(73856093), np.uint64(19349663), np.uint64(83492791))
+_MIX = (np.uint64(0x7FEB352D), np.uint64(0x846CA68B))
 _EMPTY, _HIDDEN, _LIT, _AWAY = 0, 1, 2, 3
 
 
 @leaf()
 def _hash(i, j, k):
-    """Even number in [0, 1) from three integers; Wellons' lowbias32."""
-    h = np.uint32(i) * np.uint32(73856093) ^ np.uint32(j) * np.uint32(19349663)
-    h ^= np.uint32(k) * np.uint32(83492791)
-    h = (h ^ (h >> np.uint32(16))) * np.uint32(0x7FEB352D)
-    h = (h ^ (h >> np.uint32(15))) * np.uint32(0x846CA68B)
-    return (h ^ (h >> np.uint32(16))) / 4294967296.0
+    """Even number in [0, 1) from three small integers; Wellons' lowbias32.
+
+    Numba widens 32-bit products, so each one is cut back by hand.
+    """
+    h = (np.uint64(i) * _PRIMES[0]) ^ (np.uint64(j) * _PRIMES[1]) ^ (np.uint64(k) * _PRIMES[2])
+    h &= _LOW
+    h = ((h ^ (h >> np.uint64(16))) * _MIX[0]) & _LOW
+    h = ((h ^ (h >> np.uint64(15))) * _MIX[1]) & _LOW
+    return np.float64(h ^ (h >> np.uint64(16))) / 4294967296.0
 
 
 @leaf()
