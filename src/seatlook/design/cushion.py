@@ -28,7 +28,8 @@ class Cushion:
     bolster_width : from the trench to where the bolster reaches its level
     pillow : rise of the insert's middle above the trenches
     seat_y, fade_front, fade_rear : trench and insert come up to the bolsters' level over these
-        lengths, so that no crease is left where front and rear panels are sewn on
+        lengths, along a parabola: with ``crown_y`` the insert stays convex along the seat too,
+        for a cover under tension would lift off a dish
     roll, roll_front : radius at sides, corners and rear; in the middle of the front
     roll_angle : angle turned by the roll; beyond 90 degrees the wall leans inward
     seam_angle : where on the roll the top is sewn to the walls
@@ -43,15 +44,15 @@ class Cushion:
     height: float = 0.125
     tilt: float = 0.04
     crown_x: float = 0.006
-    crown_y: float = 0.010
+    crown_y: float = 0.022
     trench: float = 0.135
     trench_taper: float = 0.03
-    trench_depth: float = 0.042
+    trench_depth: float = 0.034
     bolster_width: float = 0.070
-    pillow: float = 0.026
-    seat_y: float = 0.03
-    fade_front: float = 0.245
-    fade_rear: float = 0.215
+    pillow: float = 0.021
+    seat_y: float = 0.0
+    fade_front: float = 0.29
+    fade_rear: float = 0.27
     roll: float = 0.046
     roll_front: float = 0.060
     roll_angle: float = np.deg2rad(90.0)
@@ -85,7 +86,7 @@ class Cushion:
         """Share of the trench's depth that is left at ``y``."""
         reach = np.where(y < self.seat_y, self.fade_front, self.fade_rear)
         phase = np.clip((y - self.seat_y) / reach, -1, 1)
-        return np.asarray(np.cos(np.pi / 2 * phase) ** 2)
+        return np.asarray(1 - phase**2)
 
     def outline(self, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Project p (k, 2) onto the plan outline: foot (k, 2), outward normal, signed distance."""
