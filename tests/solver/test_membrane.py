@@ -129,7 +129,7 @@ def test_kernel_equals_its_twin():
 def test_curve_is_the_integral_of_its_stiffness(e):
     fabric = fabrics.woven()
     tables, counts = law_tables([fabric])
-    psi, stress, stiffness = kernels.curve(tables[0, 0], counts[0, 0], e)
+    psi, stress, stiffness = kernels.curve(tables, counts, 0, 0, e)
     strain = [-2e-3, *fabric.warp.strain]
     k = [0.1 * fabric.warp.stiffness[0], *fabric.warp.stiffness]
     assert stiffness == pytest.approx(np.interp(e, strain, k))
@@ -145,7 +145,7 @@ strains = st.floats(-0.08, 0.08)
 @given(strains, strains, strains)
 def test_law_is_smooth_and_convex(a, b, c):
     tables, counts = law_tables([fabrics.woven()])
-    args = tables[0], counts[0], 0.3 * 700.0, 0.1
+    args = tables, counts, np.array([[0.3 * 700.0, 0.1]]), 0
     psi, *stress = kernels.law(*args, a, b, c)
     assert psi >= -1e-15
     e = 1e-7
@@ -175,7 +175,7 @@ def test_linear_fabric_is_linear_orthotropic(a, b, c):
         bending_twist=1e-5,
     )
     tables, counts = law_tables([fabric])
-    psi, *stress = kernels.law(tables[0], counts[0], 800.0, 1.0, a, b, c)
+    psi, *stress = kernels.law(tables, counts, np.array([[800.0, 1.0]]), 0, a, b, c)
     E = np.array([a, b, c])
     expected = fabric.membrane_matrix @ E
     np.testing.assert_allclose(stress, expected, atol=1e-10)

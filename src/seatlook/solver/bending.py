@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array, eye_array, kron
+from scipy.sparse import csc_array, csr_array, eye_array, kron, triu
 
 from seatlook.model import FloatArray
 from seatlook.solver.curvature import Curvature, blocks
@@ -36,10 +36,9 @@ class Bending:
         weighted = csr_array(weight @ curvature.operator)
         matrix = csr_array(curvature.operator.T @ weighted)
         matrix = csr_array(0.5 * (matrix + matrix.T))
-        matrix.sort_indices()
         self._matrix = matrix
-        self._start = matrix.indptr.astype(np.int64)
-        self._columns = matrix.indices.astype(np.int64)
+        pairs = csr_array(triu(matrix, k=1, format="csr"))
+        self._pairs = (pairs.indptr.astype(np.int32), pairs.indices.astype(np.int32), pairs.data)
         # Clamped slopes make large terms that cancel; around ``reference`` they are small.
         self._reference = curvature.reference
         at_reference = curvature.at(curvature.reference).reshape(-1, 3)
@@ -49,7 +48,7 @@ class Bending:
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N] to ``gradient``."""
         moved = x - self._reference
-        energy = quadratic(self._start, self._columns, self._matrix.data, moved, gradient)
+        energy = quadratic(*self._pairs, moved, gradient)
         gradient += self._force
         return float(energy + (self._force * moved).sum() + self._constant)
 

@@ -48,7 +48,7 @@ class Membrane:
         self._natural = natural_strains(edges)
         bow, self._bow_offset = bow_operator(edges, curvature)
         count = bow.shape[1]
-        self._rows = (bow.indptr.astype(np.int64), bow.indices.astype(np.int64), bow.data)
+        self._rows = (bow.indptr.astype(np.int32), bow.indices.astype(np.int32), bow.data)
         self._split = _common(tangent_matrix(count, edges), bow)
         self._law = law_tables(fabrics)
         self._constants = np.array(
@@ -155,7 +155,11 @@ class Membrane:
 def natural_strains(edges: Edges) -> FloatArray:
     """Matrices (m, 3, 3) from the strains of a triangle's edges to (E11, E22, 2 E12)."""
     t0, t1 = -edges.normal[edges.of_face, 1], edges.normal[edges.of_face, 0]
-    return np.linalg.inv(np.stack([t0 * t0, t1 * t1, t0 * t1], axis=2))
+    # Row k of the inverse pairs the other two directions: a x b over a . (b x c).
+    along = np.stack([t0 * t0, t1 * t1, t0 * t1], axis=2)
+    out = np.stack([np.cross(along[:, k - 2], along[:, k - 1]) for k in range(3)], axis=2)
+    volume = (along[:, 0] * out[:, :, 0]).sum(axis=1)
+    return np.ascontiguousarray(out / volume[:, None, None])
 
 
 def bow_operator(edges: Edges, curvature: Curvature) -> tuple[csr_array, FloatArray]:

@@ -7,14 +7,14 @@ BLEND = 2e-3
 
 
 @njit(cache=True)
-def curve(table, count, e):
+def curve(tables, counts, f, axis, e):
     """Energy, stress and stiffness of a curve whose stiffness is piecewise linear in strain."""
-    i = count - 1
-    while i > 0 and e < table[i, 0]:
+    i = counts[f, axis] - 1
+    while i > 0 and e < tables[f, axis, i, 0]:
         i -= 1
-    d = e - table[i, 0]
-    rise = table[i, 4] if d > 0.0 else 0.0
-    k, s, psi = table[i, 1], table[i, 2], table[i, 3]
+    d = e - tables[f, axis, i, 0]
+    rise = tables[f, axis, i, 4] if d > 0.0 else 0.0
+    k, s, psi = tables[f, axis, i, 1], tables[f, axis, i, 2], tables[f, axis, i, 3]
     return (
         psi + d * (s + d * (0.5 * k + d * rise / 6.0)),
         s + d * (k + 0.5 * d * rise),
@@ -32,14 +32,15 @@ def ramp(e):
 
 
 @njit(cache=True)
-def law(tables, counts, coupling, ratio, e11, e22, e12):
+def law(tables, counts, constants, f, e11, e22, e12):
     """Energy density [J/m2], stress (S11, S22, S12) [N/m] at Green strain (E11, E22, 2 E12)."""
-    w1, s1, _ = curve(tables[0], counts[0], e11)
-    w2, s2, _ = curve(tables[1], counts[1], e22)
-    w3, s3, _ = curve(tables[2], counts[2], abs(e12))
+    w1, s1, _ = curve(tables, counts, f, 0, e11)
+    w2, s2, _ = curve(tables, counts, f, 1, e22)
+    w3, s3, _ = curve(tables, counts, f, 2, abs(e12))
     p1, dp1, _ = ramp(e11)
     p2, dp2, _ = ramp(e22)
-    a, b = coupling * (1.0 - ratio), coupling * ratio
+    b = constants[f, 0] * constants[f, 1]
+    a = constants[f, 0] - b
     return (
         w1 + w2 + w3 + a * p1 * p2 + b * e11 * e22,
         s1 + a * dp1 * p2 + b * e22,
@@ -49,14 +50,15 @@ def law(tables, counts, coupling, ratio, e11, e22, e12):
 
 
 @njit(cache=True)
-def tangent(tables, counts, coupling, ratio, e11, e22, e12):
+def tangent(tables, counts, constants, f, e11, e22, e12):
     """Material stiffness (D11, D22, D12, D33) [N/m]; the rest is zero."""
-    k1 = curve(tables[0], counts[0], e11)[2]
-    k2 = curve(tables[1], counts[1], e22)[2]
-    k3 = curve(tables[2], counts[2], abs(e12))[2]
+    k1 = curve(tables, counts, f, 0, e11)[2]
+    k2 = curve(tables, counts, f, 1, e22)[2]
+    k3 = curve(tables, counts, f, 2, abs(e12))[2]
     p1, dp1, ddp1 = ramp(e11)
     p2, dp2, ddp2 = ramp(e22)
-    a, b = coupling * (1.0 - ratio), coupling * ratio
+    b = constants[f, 0] * constants[f, 1]
+    a = constants[f, 0] - b
     return k1 + a * ddp1 * p2, k2 + a * p1 * ddp2, a * dp1 * dp2 + b, k3
 
 
@@ -103,9 +105,7 @@ def tensions(E, of_face, natural, area, fabric, tables, counts, constants, pull)
     pull[:] = 0.0
     for t in range(len(of_face)):
         f = fabric[t]
-        psi, s11, s22, s12 = law(
-            tables[f], counts[f], constants[f, 0], constants[f, 1], E[t, 0], E[t, 1], E[t, 2]
-        )
+        psi, s11, s22, s12 = law(tables, counts, constants, f, E[t, 0], E[t, 1], E[t, 2])
         total += area[t] * psi
         for k in range(3):
             pull[of_face[t, k]] += area[t] * (
@@ -120,9 +120,7 @@ def laws(E, fabric, tables, counts, constants):
     S = np.empty_like(E)
     for t in range(len(E)):
         f = fabric[t]
-        _, S[t, 0], S[t, 1], S[t, 2] = law(
-            tables[f], counts[f], constants[f, 0], constants[f, 1], E[t, 0], E[t, 1], E[t, 2]
-        )
+        _, S[t, 0], S[t, 1], S[t, 2] = law(tables, counts, constants, f, E[t, 0], E[t, 1], E[t, 2])
     return S
 
 
@@ -151,9 +149,7 @@ def curvatures(E, natural, area, fabric, tables, counts, constants, out):
     """Second derivative (m, 3, 3) [J] of every triangle's energy by its three edge strains."""
     for t in range(len(E)):
         f = fabric[t]
-        d1, d2, d12, d3 = tangent(
-            tables[f], counts[f], constants[f, 0], constants[f, 1], E[t, 0], E[t, 1], E[t, 2]
-        )
+        d1, d2, d12, d3 = tangent(tables, counts, constants, f, E[t, 0], E[t, 1], E[t, 2])
         for i in range(3):
             a = area[t] * (d1 * natural[t, 0, i] + d12 * natural[t, 1, i])
             b = area[t] * (d12 * natural[t, 0, i] + d2 * natural[t, 1, i])
