@@ -1,9 +1,9 @@
 """Covers made by hand: rectangles of one fabric, sewn, tied and laid on simple foams."""
 
 import numpy as np
+
 from meshes import rectangle
 from scenes import block, fabric, foam_material
-
 from seatlook import model
 
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+
 from covers import cylinder, sphere, volume
 from scenes import block
-
 from seatlook.errors import InputError
 from seatlook.solver.distance import distance_field
 from seatlook.solver.kernels import distance as kernel
@@ -108,7 +108,7 @@ def test_outside_the_grid_is_far():
 
 def test_open_surface_is_refused():
     vertices, faces = sphere(0.05, 3)
-    with pytest.raises(InputError, match="foam: got a surface that leaves .* lines open"):
+    with pytest.raises(InputError, match=r"foam: got a surface that leaves .* lines open"):
         distance_field(vertices, faces[(vertices[faces] < 1e-9).any(axis=(1, 2))])
 
 

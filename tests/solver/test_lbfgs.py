@@ -5,8 +5,9 @@ from hypothesis import strategies as st
 from scipy.sparse import csc_array, diags_array, identity, kron
 
 from seatlook.errors import SolverError
+from seatlook.solver.factor import Factor, SplitFactor
 from seatlook.solver.kernels import lbfgs as kernel
-from seatlook.solver.lbfgs import Factor, Lbfgs, Potential
+from seatlook.solver.lbfgs import Lbfgs, Potential
 
 
 class Quadratic:
@@ -135,6 +136,21 @@ def test_full_matrix_is_taken_too():
     right, out = np.random.default_rng(0).normal(size=(5, 3)), np.zeros((5, 3))
     Factor(K).solve(right, out)
     np.testing.assert_allclose(K @ out.ravel(), right.ravel(), atol=1e-12)
+
+
+def test_split_matrix_treats_the_normal_by_itself():
+    along, across = csc_array(chain(6)), csc_array(0.1 * chain(6, ends=5.0))
+    normal = np.tile([0.0, 0.6, 0.8], (6, 1))
+    normal[0] = 0.0
+    held = across + diags_array(np.where(np.arange(6) == 0, 1e12, 0.0))
+    right, out = np.random.default_rng(0).normal(size=(6, 3)), np.zeros((6, 3))
+    SplitFactor(along, csc_array(held), normal).solve(right, out)
+    project = normal[:, :, None] * normal[:, None, :]
+    inside = right - np.einsum("ijk,ik->ij", project, right)
+    level = np.linalg.solve(along.toarray(), inside)
+    level -= np.einsum("ijk,ik->ij", project, level)
+    pressing = np.linalg.solve(held.toarray(), np.einsum("ij,ij->i", normal, right))
+    np.testing.assert_allclose(out, level + pressing[:, None] * normal, atol=1e-12)
 
 
 def test_singular_matrix_is_an_error():

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
-from seatlook.errors import SolverError
 from seatlook.model import FloatArray
 from seatlook.solver.energy import Energy
+from seatlook.solver.factor import Preconditioner
 from seatlook.solver.kernels import lbfgs as kernel
-
 
 _SHORTEST = 1e-10  # part of the full step; shorter ones are lost in rounding
 
@@ -41,29 +39,6 @@ class Potential:
         """Sum of the second derivatives (3n, 3n)."""
         parts = [e.hessian(x, definite=definite) for e in self.energies]
         return csc_array(sum(parts[1:], parts[0]))
-
-
-class Factor:
-    """Factor of a symmetric positive definite matrix, (n, n) for each coordinate or (3n, 3n)."""
-
-    def __init__(self, matrix: csc_array) -> None:
-        try:
-            self._factor = splu(
-                matrix,
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
-        except RuntimeError as error:
-            raise SolverError(f"stiffness matrix cannot be factored: {error}") from error
-        self._size = matrix.shape[0]
-
-    def solve(self, right: FloatArray, out: FloatArray) -> None:
-        """Solve for (n, 3) right-hand sides."""
-        if self._size == len(right):
-            out[...] = self._factor.solve(right)
-        else:
-            out[...] = self._factor.solve(right.ravel()).reshape(-1, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +76,7 @@ class Lbfgs:
         self,
         potential: Potential,
         x: FloatArray,
-        factor: Factor,
+        factor: Preconditioner,
         *,
         done: Callable[[FloatArray], bool],
         iterations: int,
@@ -132,7 +107,7 @@ class Lbfgs:
             value = new
         return Descent(value, iterations, evaluations, stalled=False)
 
-    def _turn(self, factor: Factor, kept: int) -> None:
+    def _turn(self, factor: Preconditioner, kept: int) -> None:
         """Two-loop recursion over the last ``min(kept, memory)`` pairs."""
         q, work = self._direction, self._work
         np.negative(self.gradient, out=work)

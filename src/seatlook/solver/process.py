@@ -5,18 +5,20 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_array
+from scipy.sparse import csc_array, diags_array
 
 from seatlook.errors import InputError, SolverError
+from seatlook.mesh import vertex_normals
 from seatlook.model import Cover, FloatArray, Foam, Solution
 from seatlook.solver.contact import FoamContact, wave_stiffness
 from seatlook.solver.distance import distance_field
 from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.energy import Energy
+from seatlook.solver.factor import Factor, Preconditioner, SplitFactor
 from seatlook.solver.friction import Friction
 from seatlook.solver.inertia import Gravity, Inertia
 from seatlook.solver.kernels.lbfgs import largest_row
-from seatlook.solver.lbfgs import Factor, Lbfgs, Potential
+from seatlook.solver.lbfgs import Lbfgs, Potential
 from seatlook.solver.stages import Step
 from seatlook.solver.ties import Ties
 
@@ -25,6 +27,11 @@ _STEP_TOLERANCE = 0.02  # out-of-balance force over mean elastic force that ends
 _REST_TOLERANCE = 3e-4  # the same for a static solve, safely below RESIDUAL
 # Above this ratio B / (E h^2) bending sets the pace of the minimiser and joins the matrix.
 _STIFF_BENDING = 0.02
+
+# Strain of a taut cover, for its stiffness across itself; raised when steps prove too long.
+_TAUT = 0.01
+_BACKTRACKING = 1.5  # evaluations per iteration that say so
+_HELD = 1e12  # N/m, keeps tied vertices out of the normal motion
 
 RESIDUAL = 1e-3  # "converged": largest out-of-balance force over mean elastic nodal force
 
@@ -58,6 +65,7 @@ class Process:
         self.panel = np.zeros(len(cover.rest), dtype=np.int64)
         self.panel[cover.faces] = cover.panel[:, None]
         tension = np.array([np.sqrt(f.warp.stiffness[0] * f.weft.stiffness[0]) for f in fabrics])
+        self._tension = tension
         softness = max(
             max(f.bending_warp, f.bending_weft) / (k * cover.element_size**2)
             for f, k in zip(fabrics, tension, strict=True)
@@ -83,6 +91,7 @@ class Process:
         self.time = 0.0
         self._lbfgs = Lbfgs(self.x.shape)
         self._factor: Factor | None = None
+        self._taut, self._evaluations = _TAUT, 0
         self._work, self._start = np.zeros_like(self.x), np.zeros_like(self.x)
 
     def _foam_contact(self, foam: Foam) -> FoamContact:
@@ -128,7 +137,10 @@ class Process:
         self._lag()
         np.copyto(self.inertia.free, self.x)
         limit = max(_REST_TOLERANCE, 0.02 * record.residual) * self._elastic_force()
-        return self._descend(Factor(self._matrix()), limit, iterations)
+        record = self._descend(self._split(), limit, iterations)
+        if self._evaluations > _BACKTRACKING * record.iterations:
+            self._taut = min(5.0 * self._taut, 1.0)
+        return record
 
     def record(self, iterations: int = 0) -> Record:
         """Measure the state with nothing lagging: the balance is that of forces at ``x``."""
@@ -161,7 +173,7 @@ class Process:
             forces[name] = -self._work.sum(axis=0)
         return forces
 
-    def _descend(self, factor: Factor, limit: float, iterations: int) -> Record:
+    def _descend(self, factor: Preconditioner, limit: float, iterations: int) -> Record:
         """Minimise the moving potential until no vertex is out of balance by ``limit`` [N]."""
         np.copyto(self._start, self.x)
         descent = self._lbfgs.minimise(
@@ -174,6 +186,7 @@ class Process:
         np.subtract(self.x, self._start, out=self.v)
         # In settling, too, movement counts by the time step of the process.
         self.v /= self.dt
+        self._evaluations = descent.evaluations
         record = self.record(descent.iterations)
         self.ties.update(self.x)
         return record
@@ -193,3 +206,25 @@ class Process:
         """Scalar stiffness (n, n) [N/m] of everything for the factor."""
         sheet = self.sheet.stiffness(self._bending_in_factor)
         return csc_array(sheet + self._outer.stiffness() + self.inertia.stiffness())
+
+    def _split(self) -> SplitFactor:
+        """Factor of `_matrix` along the sheet, of its resistance to waves across it.
+
+        Across, the sheet answers by bending, tension, curvature (k^2 E h as in a shell) and foam.
+        """
+        tied = self.ties.vertices[self.ties.weights != 0.0]
+        normal = vertex_normals(self.x, self.cover.faces)
+        normal[tied] = 0.0
+        curvature2 = np.einsum("tij,tij->t", *2 * (self.sheet.curvatures(self.x),))
+        arch = np.zeros(len(self.x))
+        np.add.at(arch, self.cover.faces, (curvature2 * self.cover.rest_area / 3.0)[:, None])
+        diagonal = self._tension[self.panel] * arch + self.inertia.rate
+        diagonal[tied] += _HELD
+        if self.contact is not None:
+            diagonal += np.where(self.contact.force > 0.0, self.contact.per_vertex, 0.0)
+        across = (
+            self.sheet.bending.stiffness()
+            + self._taut * self.sheet.stiffness()
+            + diags_array(diagonal)
+        )
+        return SplitFactor(self._matrix(), csc_array(across), normal)

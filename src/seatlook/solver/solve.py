@@ -41,7 +41,7 @@ def solve(
     start: Solution | None = None,
     snapshot: Callable[[Solution], None] | None = None,
     dt: float = 0.02,
-    iterations: int = 30,
+    iterations: int = 12,
 ) -> Solution:
     """Carry out the stages of a cover and let it come to rest.
 
