@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,6 +26,15 @@ from seatlook.model import (
 CORNER = np.radians(25.0)  # an outline that turns more than this keeps its vertex
 
 
+@dataclass(frozen=True, slots=True)
+class _Rim:
+    """The boundary of one panel's mesh."""
+
+    vertices: IntArray  # in outline order
+    arc: FloatArray  # arc length of the drawn outline at each of them [m], one more at the end
+    place: dict[int, int]  # outline vertex -> place in ``vertices``
+
+
 class Builder:
     """Collects the panels' meshes and finds vertex lines in them."""
 
@@ -33,29 +43,30 @@ class Builder:
         self.h = element_size
         self._points: list[FloatArray] = []
         self._faces: list[IntArray] = []
-        self._boundary: dict[str, dict[int, int]] = {}  # panel -> outline vertex -> mesh vertex
-        self._loop: dict[str, IntArray] = {}
+        self._rims: dict[str, _Rim] = {}
         self._lines: dict[str, Line] = {}
 
     def add(self, panel: Panel, lines: dict[str, FloatArray], *, seed: int) -> None:
         """Mesh one panel; boundary vertices lie at equal arc lengths between kept corners."""
         stops = self._stops(panel)
         n = len(panel.outline)
-        sampled, kept = [], {}
-        count = 0
+        sampled: list[FloatArray] = []
+        steps: list[float] = []
+        place: dict[int, int] = {}
         for start, end in zip(stops, [*stops[1:], stops[0] + n], strict=True):
             span = panel.outline[np.arange(start, end + 1) % n]
-            points = mesh.resample(span, self.h)
-            kept[start] = count
-            sampled.append(points[:-1])
-            count += len(points) - 1
+            points = mesh.resample(span, self.h)[:-1]
+            place[start] = len(steps)
+            sampled.append(points)
+            # Of the drawn span, not of the chords: both sides of a seam keep their scale.
+            steps += len(points) * [mesh.arc_length(span)[-1] / len(points)]
         inner = [mesh.resample(line, self.h) for line in lines.values()]
         points, faces = mesh.triangulate(np.concatenate(sampled), self.h, lines=inner, seed=seed)
         offset = sum(map(len, self._points))
         self._points.append(points)
         self._faces.append(faces + offset)
-        self._boundary[panel.name] = {k: v + offset for k, v in kept.items()}
-        self._loop[panel.name] = offset + np.arange(count)
+        arc = np.concatenate([[0.0], np.cumsum(steps)])
+        self._rims[panel.name] = _Rim(offset + np.arange(len(steps)), arc, place)
         for name, line in zip(lines, inner, strict=True):
             nearest = np.linalg.norm(points[:, None] - line, axis=2).argmin(axis=0)
             self._lines[name] = line_through(points, nearest, offset)
@@ -84,12 +95,11 @@ class Builder:
     def edge(self, name: str) -> Line:
         """Vertices along a named edge, in outline order."""
         edge = self.pattern.edges[name]
-        loop, kept = self._loop[edge.panel], self._boundary[edge.panel]
-        first, last = kept[edge.start] - loop[0], kept[edge.end] - loop[0]
-        count = (last - first) % len(loop) or len(loop)
-        vertices = loop[(first + np.arange(count + 1)) % len(loop)]
-        # Arc length of the drawn edge, not of its chords: both sides of a seam keep their scale.
-        return Line(vertices, np.linspace(0.0, self.pattern.edge_length(name), count + 1))
+        rim = self._rims[edge.panel]
+        n, first = len(rim.vertices), rim.place[edge.start]
+        at = first + np.arange(((rim.place[edge.end] - first) % n or n) + 1)
+        arc = rim.arc[at % n] + np.where(at < n, 0.0, rim.arc[-1])
+        return Line(rim.vertices[at % n], arc - arc[0])
 
     def chain(self, names: Sequence[str], *, reverse: bool = False) -> list[Line]:
         """Edges one after the other, each turned round if ``reverse``."""
