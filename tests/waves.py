@@ -85,3 +85,21 @@ def lateral_load(kind, slenderness, rows, *, poisson=0.3):
     load = weight * slenderness / abs(top[0])
     EI, GJ = (1 - poisson**2) * slenderness, 2 * (1 - poisson) * slenderness
     return load / np.sqrt(EI * GJ)
+
+
+def sine_curvature_error(kind, edges_per_wave, *, edges=48, amplitude=1e-4):
+    """Error rms / peak of the curvature tensor of a skew sine sheet: raw, and recovered."""
+    X, T = meshes.rectangle(kind, 1.0, 1.0, 1.0 / edges)
+    sheet = ElasticSheet(X, T, np.zeros(len(T)), [fabrics.isotropic()])
+    q = 2 * np.pi * edges / edges_per_wave
+    along = np.array([np.cos(0.35), np.sin(0.35)])
+    x = np.column_stack([X, amplitude * np.sin(q * (X @ along))])
+    centre = X[T].mean(axis=1)
+    exact = (amplitude * q**2 * np.sin(q * (centre @ along)))[:, None, None] * np.outer(
+        along, along
+    )
+    inner = ((centre > 0.12) & (centre < 0.88)).all(axis=1)
+    return [
+        np.sqrt(((kappa - exact)[inner] ** 2).sum(axis=(1, 2)).mean()) / (amplitude * q**2)
+        for kappa in (sheet.curvatures(x), sheet.recovered_curvatures(x))
+    ]

@@ -5,7 +5,7 @@ import fabrics
 import meshes
 import naive
 from seatlook.solver.elastic import ElasticSheet
-from waves import lateral_load, winkler_load
+from waves import lateral_load, sine_curvature_error, winkler_load
 
 
 def sheet(kind="uns", fabric=None, h=0.1, **clamp):
@@ -112,3 +112,10 @@ def test_buckling_load_on_a_soft_bed(kind):
 def test_lateral_buckling_of_a_narrow_strip(kind):
     # Timoshenko's 12.85 is the limit of no width; the rest is the width.
     assert lateral_load(kind, 0.02, 4) == pytest.approx(12.85, rel=0.03)
+
+
+@pytest.mark.parametrize(("edges_per_wave", "raw", "recovered"), [(8, 0.2, 0.08), (16, 0.1, 0.04)])
+def test_curvature_of_a_sine_sheet(edges_per_wave, raw, recovered):
+    rms = sine_curvature_error("uns", edges_per_wave)
+    assert rms[0] < raw
+    assert rms[1] < recovered

@@ -97,12 +97,34 @@ class ElasticSheet:
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         return _tensors(-np.einsum("tki,ti->tk", second, normal))
 
+    def recovered_curvatures(self, x: FloatArray) -> FloatArray:
+        """Return smoother kappa of every triangle, (m, 2, 2) [1/m].
+
+        Averaged over each vertex's triangles and back, which halves the scatter but flattens
+        waves; what the same averaging takes from the result is put back once.
+        """
+        vertex = self._at_vertices(self.curvatures(x))
+        lost = vertex - self._at_vertices(vertex[self.faces].mean(axis=1))
+        return np.asarray((vertex + lost)[self.faces].mean(axis=1))
+
     def strains(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Green strain on the top, mid and bottom surface, each (m, 2, 2) in warp/weft axes [1]."""
+        """Green strain on the top, mid and bottom surface, each (m, 2, 2) in warp/weft axes [1].
+
+        Top and bottom differ by the thickness times the recovered curvature.
+        """
         x = np.array(x, dtype=np.float64, order="C")
         mid = _tensors(self.membrane.strain(x))
-        part = 0.5 * self.thickness[:, None, None] * self.curvatures(x)
+        part = 0.5 * self.thickness[:, None, None] * self.recovered_curvatures(x)
         return mid + part, mid, mid - part
+
+    def _at_vertices(self, values: FloatArray) -> FloatArray:
+        """Area-weighted mean (n, 2, 2) of the triangles around every vertex."""
+        corners, n = self.faces.ravel(), len(self.mass)
+        weight = np.repeat(self.area, 3)
+        flat = np.repeat(values.reshape(-1, 4), 3, axis=0) * weight[:, None]
+        total = np.stack([np.bincount(corners, column, minlength=n) for column in flat.T], axis=1)
+        around = np.maximum(np.bincount(corners, weight, minlength=n), np.finfo(float).tiny)
+        return np.asarray((total / around[:, None]).reshape(-1, 2, 2))
 
     def _clamps(
         self, rest: FloatArray, clamped: BoolArray | None, positions: FloatArray | None
