@@ -27,6 +27,7 @@ def demo(
     out: Out = Path("out/demo"),
     ease: Shares = (),
     starve: Shares = (),
+    tension_percent: float = 1.0,
     material: str = "leather-laminate",
     insert: str | None = None,
     element_size_mm: float = 7.0,
@@ -49,6 +50,8 @@ def demo(
         SEAM=2%: make one sewing line of this seam longer than its partner, a sewing fault.
     starve
         PANEL=3%: make this panel narrower across its grain.
+    tension_percent
+        All panels are cut smaller by this share, so that the cover is taut.
     material
         Cover material, from "seatlook materials list".
     insert
@@ -61,6 +64,7 @@ def demo(
         out,
         ease=wanted[0],
         starve=wanted[1],
+        tension=tension_percent / 100,
         material=material,
         insert=insert or material,
         element_size_mm=element_size_mm,
@@ -78,6 +82,7 @@ def flatten(
     unit: Literal["mm", "m"] = "mm",
     ease: Shares = (),
     starve: Shares = (),
+    tension_percent: float = 0.0,
     allowance_mm: float = 10.0,
     json: Json = False,
 ) -> None:
@@ -96,6 +101,8 @@ def flatten(
         SEAM=2%: make one sewing line of this seam longer than its partner.
     starve
         PANEL=3%: make this panel narrower across its grain.
+    tension_percent
+        All panels are cut smaller by this share, so that the cover is taut.
     allowance_mm
         Seam allowance and hem round every panel.
     """
@@ -107,6 +114,7 @@ def flatten(
         allowance=allowance_mm / 1e3,
         ease=_shares("--ease", ease),
         starve=_shares("--starve", starve),
+        tension=tension_percent / 100,
     )
     _write_pattern(flat, out)
     files.write_text(out / "placement.toml", _placement(flat) + "\n")
@@ -122,6 +130,7 @@ def write_demo(
     *,
     ease: dict[str, float],
     starve: dict[str, float],
+    tension: float = 0.01,
     material: str,
     insert: str,
     element_size_mm: float,
@@ -154,6 +163,7 @@ def write_demo(
         insert=insert,
         element_size_mm=element_size_mm,
         seed=seed,
+        tension=tension,
         placement=_placement(flat),
         spoiled=[*(f"ease {k} {v:.1%}" for k, v in ease.items()),
                  *(f"starve {k} {v:.1%}" for k, v in starve.items())],

@@ -128,6 +128,9 @@ def _zones(evaluation: Evaluation) -> Table:
             "W2 above 1 [% of area]",
             "W_stretch mean",
             "W_compression mean",
+            "stretch [% of W2]",
+            "W2 error",
+            "h [mm]",
         ),
         rows=tuple(
             (
@@ -138,6 +141,9 @@ def _zones(evaluation: Evaluation) -> Table:
                 100 * row.w2_area_share,
                 row.w_stretch_mean,
                 row.w_compression_mean,
+                100 * row.stretch_share,
+                row.w2_error,
+                1e3 * row.element_size,
             )
             for row in sorted(evaluation.zones, key=lambda row: -row.w2_p95)
             if row.zone != "free edge"
