@@ -37,11 +37,12 @@ RESIDUAL = 1e-3  # "converged": largest out-of-balance force over mean elastic n
 
 
 class Record(NamedTuple):
-    """One row of the history; energies [J], gap [m], speed as ratio of energies [1]."""
+    """One row of the history: time [s], energies [J], gap [m]; ``elastic`` is the sheet's own."""
 
     time: float
     energy: float
     elastic: float
+    foam: float
     kinetic: float
     residual: float
     seam_gap: float
@@ -128,7 +129,7 @@ class Process:
         self.inertia.free += self.x
         if refactor or self._factor is None:
             self._factor = Factor(self._matrix())
-        limit = _STEP_TOLERANCE * self._elastic_force()
+        limit = _STEP_TOLERANCE * self._force_scale()
         return self._descend(self._factor, limit, self.iterations)
 
     def settle(self, dt: float, record: Record, iterations: int) -> Record:
@@ -136,7 +137,7 @@ class Process:
         self.inertia.set_step(dt)
         self._lag()
         np.copyto(self.inertia.free, self.x)
-        limit = max(_REST_TOLERANCE, 0.02 * record.residual) * self._elastic_force()
+        limit = max(_REST_TOLERANCE, 0.02 * record.residual) * self._force_scale()
         record = self._descend(self._split(), limit, iterations)
         if self._evaluations > _BACKTRACKING * record.iterations:
             self._taut = min(5.0 * self._taut, 1.0)
@@ -145,8 +146,9 @@ class Process:
     def record(self, iterations: int = 0) -> Record:
         """Measure the state with nothing lagging: the balance is that of forces at ``x``."""
         self._lag()
-        scale = self._elastic_force()
+        scale = self._force_scale()
         elastic = self._elastic.value(self.x, self._work)
+        foam = 0.0 if self.contact is None else self.contact.value(self.x, self._work)
         energy = self._static.value(self.x, self._work)
         if not np.isfinite(energy):
             raise SolverError(f"energy is {energy} at {self.time:.3g} s: the cover has blown up")
@@ -155,8 +157,9 @@ class Process:
             time=self.time,
             energy=energy,
             elastic=elastic,
+            foam=foam,
             kinetic=0.5 * float(self._mass @ speed2),
-            residual=largest_row(self._work) / scale if scale > 0 else np.inf,
+            residual=largest_row(self._work) / scale,
             seam_gap=self.ties.largest_gap(self.x, "seam"),
             iterations=iterations,
         )
@@ -197,10 +200,15 @@ class Process:
             self.contact.update(self.x)
             self.friction.update(self.x)
 
-    def _elastic_force(self) -> float:
-        """Mean over the vertices of the elastic force [N]."""
+    def _force_scale(self) -> float:
+        """Mean over the vertices of the elastic force [N], or of the weight if that is more.
+
+        A sheet that lies level has weight but no elastic forces.
+        """
+        self._work.fill(0.0)
         self._elastic.value(self.x, self._work)
-        return float(np.sqrt(np.einsum("ij,ij->i", self._work, self._work)).mean())
+        elastic = np.sqrt(np.einsum("ij,ij->i", self._work, self._work)).mean()
+        return max(float(elastic), float(self.gravity.weight.mean()))
 
     def _matrix(self) -> csc_array:
         """Scalar stiffness (n, n) [N/m] of everything for the factor."""
