@@ -42,8 +42,10 @@ def test_crown_is_positive_and_its_top_longer():
     x = np.column_stack([radius * np.sin(angle), X[:, 1], radius * np.cos(angle)])
     top, mid, bottom = s.strains(x)
     inside = ~s.edges.free[s.edges.of_face].any(axis=1)
-    kappa = (top - bottom)[inside, 0, 0] / 1e-3
-    np.testing.assert_allclose(kappa, 1 / radius, rtol=0.02)
+    np.testing.assert_allclose(s.curvatures(x)[inside, 0, 0], 1 / radius, rtol=0.02)
+    between = s.thickness[:, None, None] * s.recovered_curvatures(x)
+    np.testing.assert_allclose(top - bottom, between, atol=1e-15)
+    assert (top - bottom)[:, 0, 0].min() > 0.0
     np.testing.assert_allclose(top + bottom, 2 * mid, atol=1e-15)
 
 
