@@ -1,5 +1,7 @@
 """Covers made by hand: rectangles of one fabric, sewn, tied and laid on simple foams."""
 
+import dataclasses
+
 import numpy as np
 
 from meshes import rectangle
@@ -48,12 +50,8 @@ def sheet(length, width, h, *, z=0.0, kind="uns", at=(0.0, 0.0)):
 
 def foam(vertices, faces, **change):
     """Foam of the tests' material with some fields changed."""
-    values = foam_material()
-    fields = {name: getattr(values, name) for name in ("name", "strain", "stress", "young")}
-    fields |= {"poisson": values.poisson, "friction": values.friction}
-    return model.Foam(
-        vertices=vertices, faces=faces, material=model.FoamMaterial(**(fields | change))
-    )
+    material = dataclasses.replace(foam_material(), **change)
+    return model.Foam(vertices=vertices, faces=faces, material=material)
 
 
 def flat_foam(size=0.3, height=0.1, **change):

@@ -42,7 +42,7 @@ def test_force_rises_to_mu_n_and_no_further():
 def test_work_of_a_long_slide():
     """Energy of a slide of 5 mm: mu N (5 mm - slip / 3)."""
     x, _, friction = pressed(1)
-    assert friction.value(x + [[5e-3, 0, 0]], np.zeros((1, 3))) == pytest.approx(
+    assert friction.value(np.add(x, [[5e-3, 0, 0]]), np.zeros((1, 3))) == pytest.approx(
         0.1 * (5e-3 - 2e-4 / 3), rel=1e-3
     )
 
@@ -50,7 +50,7 @@ def test_work_of_a_long_slide():
 def test_sliding_drags_the_anchor_and_rest_keeps_it():
     x, contact, friction = pressed(2)
     start = friction.anchor.copy()
-    moved = x + [[1e-4, 0, 0], [3e-3, 0, 0]]
+    moved = np.add(x, [[1e-4, 0, 0], [3e-3, 0, 0]])
     contact.update(moved)
     friction.update(moved)
     np.testing.assert_allclose(friction.anchor[0], start[0], atol=1e-9)

@@ -1,3 +1,4 @@
+import dataclasses
 import importlib
 
 import numpy as np
@@ -213,7 +214,7 @@ def test_going_on_from_a_snapshot_gives_the_same_bits():
         model.Stage(name="sew", start=0.0, end=0.2),
         model.Stage(name="hold", start=0.2, end=0.3),
     )
-    c = model.Cover(**{f: getattr(c, f) for f in c.__slots__ if f != "stages"}, stages=stages)
+    c = dataclasses.replace(c, stages=stages)
     states = []
     whole = solve(c, snapshot=states.append)
     assert [s.stage for s in states] == ["sew", "hold"]
@@ -274,6 +275,5 @@ def test_inverted_triangle_is_refused():
     c = laid(h=0.04)
     faces = np.array(c.faces)
     faces[3] = faces[3][::-1]
-    bad = model.Cover(**{f: getattr(c, f) for f in c.__slots__ if f != "faces"}, faces=faces)
     with pytest.raises(InvertedElementError):
-        solve(bad)
+        solve(dataclasses.replace(c, faces=faces))

@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -112,13 +114,11 @@ def test_multipliers_take_over_what_the_spring_leaves(made):
 def test_small_gaps_are_left_to_the_spring(made):
     c, ties, x = made
     ties.close()
-    x[len(x) - 10 :] = x[len(x) - 10 :]
-    seam, hook = c.stitchings[0], c.anchors[0]
-    x[hook.points.vertices[:, 0]] = hook.target + [0, 0, 4e-5]
+    hook = c.anchors[0]
+    x[hook.points.vertices[:, 0]] = np.add(hook.target, [0, 0, 4e-5])
     ties.update(x)
     assert not ties.multiplier[ties.ties[1].rows].any()
     assert ties.multiplier[ties.ties[0].rows].any()
-    assert len(seam.a) == 4
 
 
 def test_figures_of_a_tie(made):
@@ -145,10 +145,7 @@ def test_schedule_covers_the_stages_in_order():
 
 def test_unplanned_stage_is_refused():
     c = two_strips()
-    wrong = model.Cover(
-        **{f: getattr(c, f) for f in c.__slots__ if f != "stages"},
-        stages=(model.Stage(name="sewing", start=0, end=1), HOOK),
-    )
+    wrong = dataclasses.replace(c, stages=(model.Stage(name="sewing", start=0, end=1), HOOK))
     with pytest.raises(
         InputError, match=r"seam.stage: got 'sew', expected one of .* \(did you mean 'sewing'\?\)"
     ):
