@@ -69,3 +69,42 @@ def green_strain(F: FloatArray) -> FloatArray:
     """
     FtF = np.swapaxes(F, 1, 2) @ F
     return np.asarray(0.5 * (FtF - np.eye(2)))
+
+
+def logarithmic_strain(green: FloatArray) -> FloatArray:
+    """Logarithmic strain ``ln(1 + 2 E) / 2`` of the same stretch, in the same axes.
+
+    Parameters
+    ----------
+    green : (m, 2, 2) float64, principal values above -1/2
+
+    Returns
+    -------
+    (m, 2, 2) float64
+        nan where a principal value is -1/2 or less, which no stretch has.
+
+    Examples
+    --------
+    >>> logarithmic_strain(np.array([[[0.105, 0.0], [0.0, 0.0]]]))[0, 0, 0].round(6).item()
+    0.09531
+    """
+    major, minor = principal_values(green)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        top, low = 0.5 * np.log1p(2.0 * major), 0.5 * np.log1p(2.0 * minor)
+        gap = major - minor
+        # The slope of ln(1 + 2 E) / 2 is the quotient's limit for equal values.
+        slope = np.where(gap > 1e-8, (top - low) / np.maximum(gap, 1e-8), 1.0 / (1.0 + 2 * major))
+    middle = 0.5 * (major + minor)
+    tensor = slope[:, None, None] * (green - middle[:, None, None] * np.eye(2))
+    return np.asarray(tensor + (0.5 * (top + low))[:, None, None] * np.eye(2))
+
+
+def major_direction(tensor: FloatArray) -> FloatArray:
+    """Angle (m,) [rad] in (-pi/2, pi/2] from the first axis to the major principal direction.
+
+    Examples
+    --------
+    >>> np.degrees(major_direction(np.array([[[1.0, 1.0], [1.0, 1.0]]]))).round(6).tolist()
+    [45.0]
+    """
+    return np.asarray(0.5 * np.arctan2(2.0 * tensor[:, 0, 1], tensor[:, 0, 0] - tensor[:, 1, 1]))

@@ -6,12 +6,21 @@ whose top is stretched; a valley has ``kappa < 0``.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Literal
+
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.kinematics import principal_values
+from seatlook.kinematics import logarithmic_strain, principal_values
 from seatlook.model import FloatArray, Solution, WrinkleMap
 from seatlook.model.scene import CurvatureMode
+
+StrainMeasure = Literal["green", "logarithmic"]
+STRAIN_MEASURES: dict[StrainMeasure, Callable[[FloatArray], FloatArray]] = {
+    "green": lambda green: green,
+    "logarithmic": logarithmic_strain,
+}
 
 
 def surface_strains(solution: Solution) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -79,6 +88,8 @@ def wrinkle_indices(
     thickness: float | FloatArray,
     c_threshold: float | FloatArray,
     curvature: CurvatureMode = "paper",
+    *,
+    strain_measure: StrainMeasure = "green",
 ) -> WrinkleMap:
     """Evaluate eqs. (1) to (6).
 
@@ -93,6 +104,8 @@ def wrinkle_indices(
         "paper" is eq. (1) as printed. "tensor" takes the eigenvalue of largest magnitude of
         ``K = (eps_top - eps_bottom) / t`` as C (a tie counts as valley), and its smallest
         eigenvalue for W2, so that a saddle's valley direction is not hidden by its crown.
+    strain_measure : "green" or "logarithmic"
+        The measure in which the equations are evaluated; the strains given are Green's.
 
     Returns
     -------
@@ -102,7 +115,8 @@ def wrinkle_indices(
     Raises
     ------
     InputError
-        Strains that are not finite, thickness or threshold not above 0, unknown ``curvature``.
+        Strains that are not finite, thickness or threshold not above 0, unknown ``curvature``
+        or ``strain_measure``.
 
     Examples
     --------
@@ -113,6 +127,12 @@ def wrinkle_indices(
     paper [-10.] [0.5]
     tensor [-20.] [1.]
     """
+    if strain_measure not in STRAIN_MEASURES:
+        raise InputError.single(
+            "strain_measure", got=repr(strain_measure), expected="'green' or 'logarithmic'"
+        )
+    measure = STRAIN_MEASURES[strain_measure]
+    strain_top, strain_mid, strain_bottom = map(measure, (strain_top, strain_mid, strain_bottom))
     _check(strain_top, strain_mid, strain_bottom, thickness, c_threshold)
     t = np.broadcast_to(np.asarray(thickness, dtype=float), len(strain_mid))
     if curvature == "paper":

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatlook.model import FloatArray, Solution, WrinkleMap
+from seatlook.wrinkle.recovery import recovery_error
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,6 +19,9 @@ class ZoneRow:
     area : [m2]
     w2_mean, w2_p95 : [1]; w2_area_share : share of the area with W2 above 1
     w_stretch_mean, w_compression_mean : [1]
+    stretch_share : [1] in [0, 1]   part of the zone's W2 that is W_stretch; 0 where W2 is 0
+    element_size : [m]              mean edge length h of the zone's faces at rest
+    w2_error : [1]                  rms of W2 against its recovered field, an estimate of its error
     """
 
     zone: str
@@ -27,12 +31,18 @@ class ZoneRow:
     w2_area_share: float
     w_stretch_mean: float
     w_compression_mean: float
+    stretch_share: float
+    element_size: float
+    w2_error: float
 
 
 def zone_table(solution: Solution, indices: WrinkleMap) -> tuple[ZoneRow, ...]:
     """Summarise W2 and its causes zone by zone, empty zones left out."""
     cover = solution.cover
     area = cover.rest_area
+    error = recovery_error(cover.faces, area, indices.w2)
+    corners = cover.rest[cover.faces]
+    side = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean(axis=1)
     rows = []
     for i, name in enumerate(cover.zone_names):
         inside = cover.zone == i
@@ -40,15 +50,19 @@ def zone_table(solution: Solution, indices: WrinkleMap) -> tuple[ZoneRow, ...]:
             continue
         weight = area[inside]
         w2 = indices.w2[inside]
+        mean, stretch = _mean(w2, weight), _mean(indices.w_stretch[inside], weight)
         rows.append(
             ZoneRow(
                 zone=name,
                 area=float(weight.sum()),
-                w2_mean=_mean(w2, weight),
+                w2_mean=mean,
                 w2_p95=quantile(w2, weight, 0.95),
                 w2_area_share=_mean((w2 > 1).astype(float), weight),
-                w_stretch_mean=_mean(indices.w_stretch[inside], weight),
+                w_stretch_mean=stretch,
                 w_compression_mean=_mean(indices.w_compression[inside], weight),
+                stretch_share=stretch / mean if mean > 0 else 0.0,
+                element_size=float(side[inside].mean()),
+                w2_error=_mean(error[inside] ** 2, weight) ** 0.5,
             )
         )
     return tuple(rows)
