@@ -100,7 +100,7 @@ def test_surface_has_no_crease_except_in_the_trenches(cushion):
     step = 1e-5 * np.column_stack([np.cos(angle), np.sin(angle)])
     turned = np.linalg.norm(normals(cushion, p + step) - normals(cushion, p - step), axis=1)
     assert turned.max() < 2e-5 * 60  # no curvature above 60 1/m
-    trench = np.array([[cushion.trench_x(0.03), 0.03]])
+    trench = np.array([[cushion.trench_x(0.0), 0.0]])
     step = np.array([1e-5, 0])
     left, right = normals(cushion, trench + step)[0], normals(cushion, trench - step)[0]
     assert np.degrees(np.arccos(left @ right)) > 60
@@ -109,8 +109,8 @@ def test_surface_has_no_crease_except_in_the_trenches(cushion):
 def test_trench_lips_are_convex_and_as_deep_as_said(cushion):
     """Across the trench the section falls and rises again with convex lips only."""
     x = np.linspace(0.0, 0.20, 2001)
-    z = cushion.top(x, np.full(2001, cushion.seat_y))
-    bottom = cushion.trench_x(cushion.seat_y)
+    z = cushion.top(x, np.zeros(2001))
+    bottom = cushion.trench_x(0.0)
     assert x[z[500:].argmin() + 500] == pytest.approx(bottom, abs=1e-4)
     assert z[0] - z.min() == pytest.approx(cushion.pillow, abs=0.002)
     assert z.max() - z.min() == pytest.approx(cushion.trench_depth, abs=0.006)
@@ -120,8 +120,26 @@ def test_trench_lips_are_convex_and_as_deep_as_said(cushion):
 
 def test_top_is_level_with_the_bolsters_where_front_and_rear_are_sewn_on(cushion):
     x = np.linspace(-0.2, 0.2, 401)
-    for y in (-0.22, 0.255):
+    for y in (-cushion.fade, cushion.fade):
         assert np.abs(np.diff(cushion.top(x, np.full(401, y)), 3)).max() < 1e-12
+
+
+@pytest.mark.parametrize("end", [-1.0, 1.0])
+def test_no_crease_runs_on_into_front_and_rear(cushion, end):
+    """Where the seam round the top crosses the trench line, less than 1 % of the depth is left."""
+    x = np.linspace(0.1, 0.17, 200)
+    feet = np.column_stack([x, np.full(200, end * cushion.half[1])])
+    seam = cushion.ring(feet, np.tile([0.0, end], (200, 1)), level=None)
+    crossing = seam[np.abs(x - cushion.trench_x(seam[:, 1])).argmin(), 1]
+    assert 0 <= cushion.depth_share(crossing) < 0.01
+    assert cushion.depth_share(0.9 * crossing) > 0.05
+
+
+def test_insert_is_convex_along_the_middle_plane(cushion):
+    """A cover under tension would lift off a dish."""
+    y = np.linspace(-0.3, 0.3, 601)
+    z = cushion.top(np.zeros(601), y)
+    assert np.diff(z, 2).max() < 0
 
 
 def test_foam_is_closed_and_looks_outward(foam, solid_angle):
@@ -151,7 +169,7 @@ def test_foam_leaves_room_under_the_wires(foam, solid_angle, cushion):
     """A slot as deep as said in the middle of the trench, none where the trench has run out."""
     for wire in ("trench_left", "trench_right"):
         line = foam.curves[wire]
-        deepest = line[np.abs(line[:, 1] - cushion.seat_y).argmin()]
+        deepest = line[np.abs(line[:, 1]).argmin()]
         for below, wanted in ((0.8 * cushion.slot, 0.0), (1.4 * cushion.slot, 1.0)):
             point = deepest - [0, 0, below]
             assert solid_angle(point[None], foam.vertices, foam.faces) == pytest.approx(wanted)

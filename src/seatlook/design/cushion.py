@@ -24,12 +24,13 @@ class Cushion:
     height, tilt : top of the middle; rise towards the front per length
     crown_x, crown_y : fall of the bolsters' level at the outline's sides and ends
     trench, trench_taper : half width of the insert at y = 0; widening per length to the front
-    trench_depth : from the bolsters' level to the tie-down trench, deepest at ``seat_y``
+    trench_depth : from the bolsters' level to the tie-down trench, deepest at y = 0
     bolster_width : from the trench to where the bolster reaches its level
     pillow : rise of the insert's middle above the trenches
-    seat_y, fade_front, fade_rear : trench and insert come up to the bolsters' level over these
-        lengths, along a parabola: with ``crown_y`` the insert stays convex along the seat too,
-        for a cover under tension would lift off a dish
+    fade, fade_tail : trench and insert come up to the bolsters' level at this distance from the
+        middle, along a parabola and over the tail softly, so that no crease is left where front
+        and rear panels are sewn on. With ``crown_y`` the insert stays convex along the seat too:
+        a cover under tension would lift off a dish
     roll, roll_front : radius at sides, corners and rear; in the middle of the front
     roll_angle : angle turned by the roll; beyond 90 degrees the wall leans inward
     seam_angle : where on the roll the top is sewn to the walls
@@ -44,15 +45,14 @@ class Cushion:
     height: float = 0.125
     tilt: float = 0.04
     crown_x: float = 0.006
-    crown_y: float = 0.022
+    crown_y: float = 0.026
     trench: float = 0.135
     trench_taper: float = 0.03
     trench_depth: float = 0.034
     bolster_width: float = 0.070
     pillow: float = 0.021
-    seat_y: float = 0.0
-    fade_front: float = 0.29
-    fade_rear: float = 0.27
+    fade: float = 0.263
+    fade_tail: float = 0.015
     roll: float = 0.046
     roll_front: float = 0.060
     roll_angle: float = np.deg2rad(90.0)
@@ -80,13 +80,14 @@ class Cushion:
         # Sixth power: round shoulders, so the insert swells like a pillow between its seams.
         inner = self.trench_depth - self.pillow * (1 - 0.35 * u**2 - 0.65 * u**6)
         carved = np.where(np.abs(x) < trench, inner, self.trench_depth * out**2)
-        return np.asarray(level - carved * self.fade(y))
+        return np.asarray(level - carved * self.depth_share(y))
 
-    def fade(self, y: FloatArray) -> FloatArray:
-        """Share of the trench's depth that is left at ``y``."""
-        reach = np.where(y < self.seat_y, self.fade_front, self.fade_rear)
-        phase = np.clip((y - self.seat_y) / reach, -1, 1)
-        return np.asarray(1 - phase**2)
+    def depth_share(self, y: FloatArray) -> FloatArray:
+        """Share of the trench's depth that is left at ``y``: two parabolas with one tangent."""
+        reach, tail = self.fade, self.fade_tail
+        middle = 1 - y**2 / (reach * (reach - tail))
+        end = np.maximum(reach - np.abs(y), 0) ** 2 / (reach * tail)
+        return np.asarray(np.where(np.abs(y) < reach - tail, middle, end))
 
     def outline(self, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Project p (k, 2) onto the plan outline: foot (k, 2), outward normal, signed distance."""

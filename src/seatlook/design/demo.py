@@ -80,7 +80,9 @@ def demo_foam_mesh(
     flank = np.einsum("md,mkd->mk", mesh.face_normals(surface, plane.faces), normals[plane.faces])
     lean = np.bincount(plane.faces.ravel(), flank.ravel()) / np.bincount(plane.faces.ravel())
     x, y = plane.points.T
-    slot = np.where(np.abs(np.abs(x) - shape.trench_x(y)) < 1e-9, shape.slot * shape.fade(y), 0.0)
+    slot = np.where(
+        np.abs(np.abs(x) - shape.trench_x(y)) < 1e-9, shape.slot * shape.depth_share(y), 0.0
+    )
     vertices = surface - (0.5 * cover_thickness / lean + slot)[:, None] * normals
     rim = mesh.boundary_loops(plane.faces)[0]
     vertices[rim, 2] = 0.0

@@ -7,21 +7,15 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from seatlook import mesh
+from seatlook.design.lengths import agreed_ratios, relaxed
 from seatlook.design.pattern import pair, sewing_pattern
 from seatlook.design.placement import place
-from seatlook.design.relax import HeldEdges, flatten_patch, stretches
+from seatlook.design.relax import flatten_patch, stretches
 from seatlook.design.surface import FREE, DesignSurface, Patch, Side, sides
-from seatlook.errors import InputError, Problem, SeatlookError, did_you_mean
+from seatlook.errors import InputError, Problem, did_you_mean
 from seatlook.model import FloatArray, Pattern, Pose
-
-# [m] over which the stretch beside an eased sewing line fades out. A linear fade over a strip is
-# a bend in the plane, which costs no strain; a shorter one drives the ease to the line's ends.
-_EASE_REACH = 0.15
-_EASE_PRECISION = 2e-5  # [m]
-_EASE_ROUNDS = 12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,12 +117,12 @@ def flatten(
     _check("starve", starve, surface.panel_names)
     _check("tension", {"": tension}, [""])
 
-    alone = {p.name: flatten_patch(p.vertices, p.faces, _held(p, [], {})) for p in patches}
-    ratio = _agreed_ratios(patches, borders, alone, limit=seam_strain)
+    alone = {p.name: flatten_patch(p.vertices, p.faces) for p in patches}
+    ratio = agreed_ratios(patches, borders, alone, limit=seam_strain)
     flat = {}
     for patch in patches:
         own = [s for s in borders if s.panel == patch.name and s.neighbour != FREE]
-        x = _relaxed(patch, own, ratio, alone[patch.name], ease)
+        x = relaxed(patch, own, ratio, alone[patch.name], ease)
         x = _grain_up(patch, x) * (1 - tension)
         flat[patch.name] = x * [1 - starve.get(patch.name, 0.0), 1.0]
     return _report(surface, patches, borders, _side_by_side(flat), allowance)
@@ -200,94 +194,6 @@ def _check(key: str, wanted: Mapping[str, float], known: Sequence[str]) -> None:
     ]
     if problems:
         raise InputError(problems)
-
-
-def _held(patch: Patch, own: Sequence[Side], ratio: Mapping[str, FloatArray]) -> HeldEdges:
-    """Return the segments of some sides with their lengths on the surface times a ratio."""
-    at = [side.indices(patch) for side in own]
-    pairs = [np.column_stack([i[:-1], i[1:]]) for i in at]
-    length = [_steps(patch.vertices[i]) * ratio[s.name] for i, s in zip(at, own, strict=True)]
-    return HeldEdges(
-        vertices=np.concatenate([np.zeros((0, 2), np.int64), *pairs]),
-        length=np.concatenate([np.zeros(0), *length]),
-    )
-
-
-def _relaxed(
-    patch: Patch,
-    own: Sequence[Side],
-    ratio: Mapping[str, FloatArray],
-    alone: FloatArray,
-    ease: Mapping[str, float],
-) -> FloatArray:
-    """Flatten one panel with its seam lengths held, eased sides at their length in total.
-
-    Holding an eased side piece by piece would crumple it: a chain under compression buckles.
-    """
-    eased = [side for side in own if side.name in ease]
-    held = _held(patch, [side for side in own if side.name not in ease], ratio)
-    x = flatten_patch(patch.vertices, patch.faces, held, start=alone)
-    if not eased:
-        return x
-    agreed = np.array([_steps(patch.vertices[s.indices(patch)]) @ ratio[s.name] for s in eased])
-    wanted = agreed * [1 + ease[s.name] for s in eased]
-    amount, slope = np.zeros(len(eased)), agreed
-    found = _lengths(patch, x, eased)
-    for _ in range(_EASE_ROUNDS):
-        if np.abs(found - wanted).max() < _EASE_PRECISION:
-            return x
-        step = (wanted - found) / slope
-        amount = amount + step
-        growth = _growth(patch, eased, amount)
-        x = flatten_patch(patch.vertices, patch.faces, held, growth=growth, start=x)
-        before, found = found, _lengths(patch, x, eased)
-        slope = np.where(step == 0, slope, (found - before) / np.where(step == 0, 1.0, step))
-    raise SeatlookError(f"panel {patch.name} does not take on the ease of its sewing lines")
-
-
-def _lengths(patch: Patch, x: FloatArray, own: Sequence[Side]) -> FloatArray:
-    return np.array([_steps(x[side.indices(patch)]).sum() for side in own])
-
-
-def _growth(patch: Patch, eased: Sequence[Side], amount: FloatArray) -> FloatArray:
-    """Return the stretch (m, 3, 3) along eased sides, fading into the panel."""
-    growth = np.tile(np.eye(3), (len(patch.faces), 1, 1))
-    middle = patch.vertices[patch.faces].mean(axis=1)
-    for side, fraction in zip(eased, amount, strict=True):
-        line = patch.vertices[side.indices(patch)]
-        centre, along = (line[1:] + line[:-1]) / 2, np.diff(line, axis=0)
-        along /= np.linalg.norm(along, axis=1, keepdims=True)
-        distance, nearest = cKDTree(centre).query(middle)
-        share = np.maximum(1 - distance / min(_EASE_REACH, float(np.max(distance))), 0)
-        tangent = along[nearest]
-        growth += (fraction * share)[:, None, None] * np.einsum("mi,mj->mij", tangent, tangent)
-    return growth
-
-
-def _agreed_ratios(
-    patches: tuple[Patch, ...],
-    borders: tuple[Side, ...],
-    alone: Mapping[str, FloatArray],
-    *,
-    limit: float,
-) -> dict[str, FloatArray]:
-    """Return per side and segment its flat length over that on the surface, agreed by both."""
-    by_name = {patch.name: patch for patch in patches}
-    wish = {}
-    for side in borders:
-        patch = by_name[side.panel]
-        at = side.indices(patch)
-        wish[side.name] = _steps(alone[side.panel][at]) / _steps(patch.vertices[at])
-    agreed: dict[str, FloatArray] = {}
-    for seam in pair(borders):
-        b = seam.b[0]
-        mean = np.clip((wish[seam.a] + wish[b][::-1]) / 2, 1 - limit, 1 + limit)
-        agreed |= {seam.a: mean, b: mean[::-1]}
-    return agreed
-
-
-def _steps(polyline: FloatArray) -> FloatArray:
-    return np.asarray(np.linalg.norm(np.diff(polyline, axis=0), axis=1))
 
 
 def _grain_up(patch: Patch, flat: FloatArray) -> FloatArray:

@@ -29,7 +29,7 @@ class HeldEdges:
 def flatten_patch(
     vertices: FloatArray,
     faces: IntArray,
-    held: HeldEdges,
+    held: HeldEdges | None = None,
     *,
     growth: FloatArray | None = None,
     start: FloatArray | None = None,
@@ -42,7 +42,7 @@ def flatten_patch(
     Parameters
     ----------
     vertices : (n, 3) float64 [m]; faces : (m, 3) int64, a disk
-    held : HeldEdges
+    held : edges with a length of their own; None for none
     growth : (m, 3, 3)   symmetric stretch that each face is to have in the plane; None for none
     start : (n, 2) [m]   first guess; None takes the conformal map
 
@@ -51,6 +51,7 @@ def flatten_patch(
     SeatlookError
         The steps do not settle, or the flat patch folds over.
     """
+    held = held or HeldEdges(vertices=np.zeros((0, 2), np.int64), length=np.zeros(0))
     gradient = _gradient(vertices, faces)
     if growth is not None:
         gradient = _grown(gradient, growth, _axes(vertices, faces))
