@@ -27,6 +27,7 @@ _PUBLIC: dict[str, str] = {
     "read_surface": "surface",
     "write_curves": "curves",
     "write_dxf": "dxf_write",
+    "write_dynain": "dynain",
     "write_obj": "surface",
     "write_result": "result",
     "write_seams": "seams",
