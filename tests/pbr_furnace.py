@@ -20,7 +20,7 @@ def reflected(appearance, v, n=256):
     tables, material = load_tables(), pack_materials([appearance])
     row = np.empty((1, len(tables.scale_mean)))
     coupling(tables, material, row)
-    seen = view_of(tables, material[0], appearance.roughness, 1.0, *v)
+    seen = view_of(tables, material[0], appearance.roughness, 1.0, 0.0, *v)
     alpha = min(seen.alpha_x, seen.alpha_y)
     if appearance.coat > 0:
         alpha = min(alpha, appearance.coat_roughness**2)

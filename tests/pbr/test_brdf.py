@@ -108,7 +108,7 @@ def compiled(appearance, v, l):
     coupling(tables, material, row)
     out = np.empty((len(v), 3))
     for i in range(len(v)):
-        seen = kernel.view_of(tables, material[0], appearance.roughness, 1.0, *v[i])
+        seen = kernel.view_of(tables, material[0], appearance.roughness, 1.0, 0.0, *v[i])
         mean = kernel.lookup_mean(row[0], seen.table_roughness)
         kernel.brdf(tables, material[0], mean, seen, *l[i], out[i])
     return out
@@ -134,7 +134,10 @@ def test_albedo_towards_is_the_integral(appearance, mu):
     out = np.empty(3)
     v = view(mu)
     kernel.albedo_towards(
-        tables, material[0], kernel.view_of(tables, material[0], appearance.roughness, 1.0, *v), out
+        tables,
+        material[0],
+        kernel.view_of(tables, material[0], appearance.roughness, 1.0, 0.0, *v),
+        out,
     )
     exact = reflected(appearance, v)
     assert (out <= 1.003).all()

@@ -9,7 +9,7 @@ from pbr_scenes import above, sheet
 from seatlook.errors import RenderError
 from seatlook.model import Camera, named_view
 from seatlook.pbr.kernels import bvh
-from seatlook.pbr.kernels.surface import look
+from seatlook.pbr.kernels.surface import ray_through
 from seatlook.pbr.studio import eye_of
 
 pytestmark = pytest.mark.render
@@ -32,7 +32,7 @@ def by_rays(solution, camera):
     ids = np.full((height, width), -1)
     for j in range(height):
         for i in range(width):
-            leaf = bvh.nearest(tree, *eye.origin, *look(eye, i, j), 0.0, stack)[0]
+            leaf = bvh.nearest(tree, *eye.origin, *ray_through(eye, i, j), 0.0, stack)[0]
             ids[j, i] = -1 if leaf < 0 else tree.face[leaf]
     return ids
 

@@ -18,14 +18,17 @@ from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
 from seatlook.pbr.kernels import bvh, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
+from seatlook.pbr.kernels.stitch import Thread
 from seatlook.pbr.picture import Image
 from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, white_of
-from seatlook.pbr.surface import FOAM, Surface, drawn_surface
+from seatlook.pbr.surface import FOAM, Surface, drawn_surface, neighbour_mean
 from seatlook.pbr.tables import load_tables
 from seatlook.pbr.texture import load_textures, texture_index
 
 Looks = Appearance | Mapping[str, Appearance] | None
 
+# Two visible rows, tonal thread of metric size 30; judgement.
+TOP_STITCH = Thread(offset=0.005, pitch=0.005, length=0.0040, width=0.0009, lighter=0.06)
 # A grey card of 18 % fills the background.
 _CARD = 0.18
 # Foam in front of the cover by less than this [m] is foam the cover has compressed.
@@ -66,10 +69,12 @@ class Studio:
     material costs only its shading, another light only its shadows.
     """
 
-    def __init__(self, solution: Solution) -> None:
+    def __init__(self, solution: Solution, *, thread: Thread = TOP_STITCH) -> None:
         offscreen_backend()
         self.solution = solution
+        self.thread = thread
         self.surface: Surface = drawn_surface(solution)
+        self._smooth = neighbour_mean(solution.cover.faces, len(solution.positions))
         self._bvh = bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
         self._cache: OrderedDict[Hashable, Any] = OrderedDict()
 
@@ -78,11 +83,8 @@ class Studio:
     ) -> Image:
         """Draw the cover; see :func:`render`."""
         level = _quality(quality)
-        materials = self._materials(appearance)
-        couplings = np.empty((len(materials), len(load_tables().scale_mean)))
-        tables.coupling(load_tables(), materials, couplings)
+        look = self._look(appearance)
         ids = self.faces(camera, level.factor)
-        lights = pack_lights(rig)
         seen = self._visibility(rig, camera, level, ids)
         width, height = camera.size
         ev = ev100(rig)
@@ -91,12 +93,9 @@ class Studio:
             self.surface.mesh,
             eye_of(camera, level.factor),
             ids,
-            materials,
-            couplings,
-            load_tables(),
-            load_textures(),
-            lights,
-            self._around(rig, materials, level),
+            look,
+            pack_lights(rig),
+            self._around(rig, look.materials, level),
             seen,
             level.factor,
             radiance,
@@ -104,7 +103,7 @@ class Studio:
         _check(radiance, ids, seen, camera)
         share = (ids >= 0).reshape(height, level.factor, width, level.factor).mean(axis=(1, 3))
         radiance += (1 - share[..., None]) * _CARD * 2.5 * 2.0**ev / np.pi * white_of(rig)
-        cover = (ids >= 0) & (ids < self.surface.faces)
+        cover = (ids >= 0) & (ids < self.surface.opaque)
         cover_share = cover.reshape(height, level.factor, width, level.factor).mean(axis=(1, 3))
         return Image(
             radiance=radiance.astype(np.float32),
@@ -129,7 +128,7 @@ class Studio:
     def _draw(self, camera: Camera, factor: int) -> npt.NDArray[np.int32]:
         from seatlook.pbr._vtk import face_window
 
-        mesh, m = self.surface.mesh, self.surface.faces
+        mesh, m = self.surface.mesh, self.surface.opaque
         size = (camera.size[0] * factor, camera.size[1] * factor)
         window, eye = face_window(), eye_of(camera, factor)
         ids = window.faces(mesh.vertices, mesh.faces[:m], camera, size)
@@ -185,15 +184,18 @@ class Studio:
             return shade.Around(sky, sent)
         mesh = self.surface.coarse
         hits = self._kept(("hits", level.strata), lambda: self._hits(level.strata))
-        few_sky = (hits == -1).mean(axis=1)[:, None] * rig.ambient * colour
+        few_sky = self._smooth((hits == -1).mean(axis=1)[:, None]) * rig.ambient * colour
         direct, few = np.empty(few_sky.shape), np.zeros(few_sky.shape)
         sizes = np.array([light.size for light in rig.lights])
         rays.irradiance(self._bvh, mesh, pack_lights(rig), sizes, direct)
         albedo = np.ascontiguousarray(materials["albedo"])
         for _ in range(level.bounces):
             rays.bounce(mesh, hits, albedo, direct + np.pi * (few_sky + few), few)
+            few = self._smooth(few)
         sky[:k] = self.surface.refined.spread(few_sky)
         sent[:k] = self.surface.refined.spread(few)
+        # Little of the sky is seen from below a seam, and from where the foam is in sight.
+        sky[k:] *= 0.3
         return shade.Around(sky, sent)
 
     def _hits(self, strata: int) -> npt.NDArray[np.int32]:
@@ -202,9 +204,10 @@ class Studio:
         hits = np.empty((len(mesh.vertices), strata * strata), dtype=np.int32)
         rays.gather(self._bvh, mesh, strata, hits)
         children = self.surface.faces // len(mesh.faces)
+        hits[hits >= self.surface.faces] = -2
         return np.where(hits >= 0, hits // children, hits)
 
-    def _materials(self, appearance: Looks) -> np.ndarray:
+    def _look(self, appearance: Looks) -> shade.Look:
         cover = self.solution.cover
         own = {n: m.appearance for n, m in zip(cover.panel_names, cover.materials, strict=True)}
         if isinstance(appearance, Appearance):
@@ -219,7 +222,10 @@ class Studio:
                     hint=did_you_mean(unknown[0], own),
                 )
             own |= appearance
-        return pack_materials([*own.values(), FOAM])
+        materials = pack_materials([*own.values(), FOAM])
+        couplings = np.empty((len(materials), len(load_tables().scale_mean)))
+        tables.coupling(load_tables(), materials, couplings)
+        return shade.Look(materials, couplings, load_tables(), load_textures(), self.thread)
 
     def _kept(self, key: Hashable, make: Callable[[], Any]) -> Any:
         """Return the cached value of ``key``; the oldest of more than 24 is dropped."""

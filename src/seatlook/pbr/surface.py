@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 
 from seatlook.errors import RenderError
 from seatlook.model import Appearance, FloatArray, Foam, IntArray, Solution
+from seatlook.pbr import seam
 from seatlook.pbr.kernels.surface import Mesh
 from seatlook.pbr.subdivision import Refined, sharp_corners, subdivide
 
@@ -27,7 +30,8 @@ class Surface:
     ----------
     mesh : Mesh           cover first, then foam; the foam's ``panel`` is one past the last panel
     refined : Refined     how the cover's vertices come from the solved ones
-    vertices, faces : int how many of the mesh's belong to the cover
+    vertices, faces : int how many of the mesh's are the refined panels
+    opaque : int          how many faces belong to the cover with its allowance turned in
     coarse_faces : (m, 3) the solver's faces
     """
 
@@ -35,6 +39,7 @@ class Surface:
     refined: Refined
     vertices: int
     faces: int
+    opaque: int
     coarse_faces: IntArray
 
     @property
@@ -49,13 +54,14 @@ class Surface:
             m.uv[:n],
             self.coarse_faces,
             np.ascontiguousarray(m.panel[: self.faces : step]),
+            m.seam[:n],
         )
 
     @property
     def cover_mesh(self) -> Mesh:
         """Only the cover; foam that it compresses is not in the way of light."""
         m = self.mesh
-        return m._replace(faces=m.faces[: self.faces], panel=m.panel[: self.faces])
+        return m._replace(faces=m.faces[: self.opaque], panel=m.panel[: self.opaque])
 
 
 def drawn_surface(solution: Solution) -> Surface:
@@ -76,15 +82,26 @@ def drawn_surface(solution: Solution) -> Surface:
         levels=levels,
         corners=sharp_corners(cover.rest, cover.faces),
     )
-    x = np.ascontiguousarray(refined.points[:, :3])
     uv = np.ascontiguousarray(refined.points[:, 3:])
+    edges = seam.sewn_edges(cover, refined, uv)
+    x = seam.close(refined.points[:, :3], edges)
     panel = np.repeat(cover.panel, 4**levels)
-    normals = vertex_normals(x, refined.faces)
-    mesh = Mesh(x, normals, _warp(x, uv, refined.faces), uv, refined.faces, panel)
+    mesh = Mesh(
+        x,
+        vertex_normals(x, refined.faces),
+        _warp(x, uv, refined.faces),
+        uv,
+        refined.faces,
+        panel,
+        seam.coordinates(uv, _panel_of_vertices(refined.faces, panel, len(x)), edges),
+    )
     n, m = len(x), len(refined.faces)
+    if len(edges):
+        mesh = _with_allowance(mesh, edges)
+    k = len(mesh.faces)
     if cover.foam is not None:
         mesh = _with_foam(mesh, cover.foam, len(cover.panel_names))
-    return Surface(mesh, refined, n, m, np.array(cover.faces))
+    return Surface(mesh, refined, n, m, k, np.array(cover.faces))
 
 
 def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
@@ -99,6 +116,22 @@ def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
     n[lost] = (0.0, 0.0, 1.0)
     length[lost] = 1.0
     return np.ascontiguousarray(n / length)
+
+
+def neighbour_mean(faces: IntArray, n: int, sweeps: int = 2) -> Callable[[FloatArray], FloatArray]:
+    """Average over a vertex and its neighbours, per panel: takes the noise off gathered light."""
+    pairs = np.stack([faces, faces[:, [1, 2, 0]]], axis=-1).reshape(-1, 2)
+    ones = np.ones(len(pairs))
+    beside = sparse.csr_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    matrix = (beside + beside.T + 2 * sparse.eye_array(n, format="csr")).tocsr()
+    total: FloatArray = np.asarray(matrix @ np.ones((n, 1)))
+
+    def mean(values: FloatArray) -> FloatArray:
+        for _ in range(sweeps):
+            values = np.asarray(matrix @ values) / total
+        return values
+
+    return mean
 
 
 def _levels(element_size: float, faces: int) -> int:
@@ -136,4 +169,25 @@ def _with_foam(mesh: Mesh, foam: Foam, panel: int) -> Mesh:
         np.vstack([mesh.uv, np.zeros((k, 2))]),
         np.vstack([mesh.faces, faces + n]),
         np.concatenate([mesh.panel, np.full(len(faces), panel)]),
+        np.vstack([mesh.seam, np.full((k, 2), np.inf)]),
     )
+
+
+def _with_allowance(mesh: Mesh, edges: seam.SewnEdges) -> Mesh:
+    points, faces, origin = seam.turned_in(mesh.vertices, mesh.normals, edges)
+    owner = np.concatenate([edges.panel, edges.panel])
+    return Mesh(
+        np.vstack([mesh.vertices, points]),
+        np.vstack([mesh.normals, mesh.normals[origin]]),
+        np.vstack([mesh.warp, mesh.warp[origin]]),
+        np.vstack([mesh.uv, mesh.uv[origin]]),
+        np.vstack([mesh.faces, faces]),
+        np.concatenate([mesh.panel, owner]),
+        np.vstack([mesh.seam, np.column_stack([np.zeros(len(points)), mesh.seam[origin, 1]])]),
+    )
+
+
+def _panel_of_vertices(faces: IntArray, panel: IntArray, n: int) -> IntArray:
+    out = np.zeros(n, dtype=np.int64)
+    out[faces] = panel[:, None]
+    return out

@@ -207,15 +207,16 @@ class View(NamedTuple):
 
 
 @leaf()
-def view_of(tables, material, roughness, albedo_share, ToV, BoV, NoV):
-    """View of a point of given roughness; ``albedo_share`` scales the base colour."""
+def view_of(tables, material, roughness, share, lighter, ToV, BoV, NoV):
+    """View of a point: ``share`` scales the base colour, ``lighter`` then takes it to white."""
     ax, ay = alphas(roughness, material.anisotropy)
     narrow = np.sqrt(min(ax, ay))
     mean = E_mean(tables, narrow)
     parts = E_parts(tables, narrow, NoV)
     coat, nap, base = passed(tables, material, parts, mean, NoV)
     a = material.albedo
-    colour = (a[0] * albedo_share, a[1] * albedo_share, a[2] * albedo_share)
+    rest = (1.0 - lighter) * share
+    colour = (a[0] * rest + lighter, a[1] * rest + lighter, a[2] * rest + lighter)
     lost = 1.0 - parts[0] - parts[1]
     return View(ToV, BoV, NoV, ax, ay, narrow, mean, lost, coat, nap, base, colour)
 

@@ -14,9 +14,9 @@ from seatlook.pbr.kernels.surface import (
     cross,
     dot,
     lift,
-    look,
     meet,
     minus,
+    ray_through,
     row,
     unit,
 )
@@ -76,7 +76,7 @@ def _reaches(bvh, lights, sizes, k, p, n, a, b, stack):
 @leaf()
 def _start(mesh, eye, f, i, j):
     """Start of a shadow ray for sample (i, j): (point, unit plane normal towards the eye, n)."""
-    ray = look(eye, i, j)
+    ray = ray_through(eye, i, j)
     b1, b2, _, plane = meet(mesh, eye, f, ray)
     p = blend(mesh.vertices, mesh.faces, f, b1, b2)
     n = blend(mesh.normals, mesh.faces, f, b1, b2)

@@ -9,16 +9,17 @@ import numpy.typing as npt
 from numba import njit
 
 from seatlook.pbr.kernels import leaf
-from seatlook.pbr.kernels.brdf import albedo_towards, brdf, view_of
-from seatlook.pbr.kernels.grain import grain
+from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, view_of
+from seatlook.pbr.kernels.grain import Textures, grain
+from seatlook.pbr.kernels.stitch import Thread, away_from_seam, relief, seam_at, tilt
 from seatlook.pbr.kernels.surface import (
     along,
     blend,
     cross,
     dot,
-    look,
     meet,
     minus,
+    ray_through,
     row,
     row_of,
     unit,
@@ -43,6 +44,20 @@ class Around(NamedTuple):
 
     sky: npt.NDArray[np.float64]
     bounce: npt.NDArray[np.float64]
+
+
+class Look(NamedTuple):
+    """What the surface is made of.
+
+    ``materials`` (p,): records of ``brdf.MATERIAL`` per panel; ``couplings`` (p, k): mean of what
+    reaches their diffuse base, over roughness.
+    """
+
+    materials: npt.NDArray[np.void]
+    couplings: npt.NDArray[np.float64]
+    tables: Tables
+    textures: Textures
+    thread: Thread
 
 
 @leaf()
@@ -77,8 +92,8 @@ def _frame(n, warp):
 
 
 @leaf()
-def sample(mesh, materials, couplings, tables, textures, lights, around, f, hit, visible, work):
-    """Radiance of one sample into ``work.out`` (3,).
+def sample(mesh, look, lights, around, f, hit, visible, work):
+    """Radiance of one sample into ``work[0]``; ``work`` is (2, 3).
 
     ``hit``: (weight, weight, distance, face normal, unit ray, angle between samples);
     ``visible`` (k,): share of each light that is not hidden.
@@ -90,27 +105,39 @@ def sample(mesh, materials, couplings, tables, textures, lights, around, f, hit,
     if dot(plane, v) < 0.0:
         n = (-n[0], -n[1], -n[2])
     n = _towards_eye(n, v)
-    material = materials[mesh.panel[f]]
+    material = look.materials[mesh.panel[f]]
     warp, weft = _frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
-    roughness, share = material.roughness, 1.0
+    roughness, share, lighter = material.roughness, 1.0, 0.0
     if material.texture >= 0:
         i, j, k = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
         u = (1.0 - b1 - b2) * mesh.uv[i, 0] + b1 * mesh.uv[j, 0] + b2 * mesh.uv[k, 0]
         w = (1.0 - b1 - b2) * mesh.uv[i, 1] + b1 * mesh.uv[j, 1] + b2 * mesh.uv[k, 1]
         width = t * spread / np.sqrt(max(0.05, dot(n, v)))
-        su, sv, roughness, share = grain(textures, material, u, w, width)
-        n = _towards_eye(unit(along(along(n, -su, warp), -sv, weft)), v)
-        warp, weft = _frame(n, warp)
+        su, sv, roughness, share = grain(look.textures, material, u, w, width)
+        n = unit(along(along(n, -su, warp), -sv, weft))
+    distance, arc = seam_at(mesh, f, b1, b2)
+    if distance < np.inf:
+        away, onward = away_from_seam(mesh, f)
+        width = t * spread / np.sqrt(max(0.05, abs(dot(plane, v))))
+        sa, so, left, covered = relief(look.thread, distance, arc, width)
+        n = unit(tilt(n, away, onward, sa, so))
+        share *= left
+        lighter = covered * look.thread.lighter
+        roughness += covered * max(0.0, 0.6 - roughness)
+    n = _towards_eye(n, v)
+    warp, weft = _frame(n, warp)
     out, f_out = work[0], work[1]
-    view = view_of(tables, material, roughness, share, dot(warp, v), dot(weft, v), dot(n, v))
-    albedo_towards(tables, material, view, f_out)
+    view = view_of(
+        look.tables, material, roughness, share, lighter, dot(warp, v), dot(weft, v), dot(n, v)
+    )
+    albedo_towards(look.tables, material, view, f_out)
     sky, bounce = (
         blend(around.sky, mesh.faces, f, b1, b2),
         blend(around.bounce, mesh.faces, f, b1, b2),
     )
     for c in range(3):
         out[c] = f_out[c] * (sky[c] + bounce[c])
-    mean = coupling_at(couplings[mesh.panel[f]], view.table_roughness)
+    mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
     for k in range(len(lights.near)):
         if visible[k] <= 0.0:
             continue
@@ -118,15 +145,13 @@ def sample(mesh, materials, couplings, tables, textures, lights, around, f, hit,
         NoL = dot(n, l)
         if NoL <= 1e-5:
             continue
-        brdf(tables, material, mean, view, dot(warp, l), dot(weft, l), NoL, f_out)
+        brdf(look.tables, material, mean, view, dot(warp, l), dot(weft, l), NoL, f_out)
         for c in range(3):
             out[c] += f_out[c] * NoL * e[c] * visible[k]
 
 
 @njit(cache=True)
-def shade(
-    mesh, eye, ids, materials, couplings, tables, textures, lights, around, visibility, factor, out
-):
+def shade(mesh, eye, ids, look, lights, around, visibility, factor, out):
     """Mean radiance of ``factor`` x ``factor`` samples added to each pixel of ``out`` (h, w, 3).
 
     ``ids`` (h factor, w factor): face per sample, -1 for none; ``visibility`` likewise, (k, ., .),
@@ -144,14 +169,12 @@ def shade(
             if f < 0:
                 continue
             count += 1
-            ray = look(eye, i, j)
+            ray = ray_through(eye, i, j)
             b1, b2, t, plane = meet(mesh, eye, f, ray)
             for k in range(len(visible)):
                 visible[k] = visibility[k, j, i] / 255.0
             hit = (b1, b2, t, plane, ray, spread)
-            sample(
-                mesh, materials, couplings, tables, textures, lights, around, f, hit, visible, work
-            )
+            sample(mesh, look, lights, around, f, hit, visible, work)
             for c in range(3):
                 out[j // factor, i // factor, c] += weight * work[0, c]
     return count

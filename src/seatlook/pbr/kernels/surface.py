@@ -15,7 +15,7 @@ class Mesh(NamedTuple):
     """The drawn surface: ``vertices, normals, warp`` (n, 3), ``uv`` (n, 2), ``faces`` (m, 3).
 
     ``warp`` is the unit direction of the first pattern coordinate; ``panel`` (m,) picks the
-    material.
+    material; ``seam`` (n, 2) [m]: distance from the seam and length along it, infinite elsewhere.
     """
 
     vertices: npt.NDArray[np.float64]
@@ -24,6 +24,7 @@ class Mesh(NamedTuple):
     uv: npt.NDArray[np.float64]
     faces: npt.NDArray[np.int64]
     panel: npt.NDArray[np.int64]
+    seam: npt.NDArray[np.float64]
 
 
 class Eye(NamedTuple):
@@ -85,7 +86,7 @@ def blend(table, faces, f, b1, b2):
 
 
 @leaf()
-def look(eye, column, line):
+def ray_through(eye, column, line):
     """Unit direction of the ray through a sample."""
     return unit(
         (
@@ -133,7 +134,7 @@ def distances(mesh, eye, ids, out):
             if ids[j, i] < 0:
                 out[j, i] = np.inf
                 continue
-            ray = look(eye, i, j)
+            ray = ray_through(eye, i, j)
             _, _, t, n = meet(mesh, eye, ids[j, i], ray)
             out[j, i] = t
             front[j, i] = dot(n, ray) < 0.0
@@ -170,7 +171,7 @@ def paint(mesh, eye, ids, corner, cover_faces, value, cosine):
             f = ids[j, i]
             if f < 0:
                 continue
-            ray = look(eye, i, j)
+            ray = ray_through(eye, i, j)
             b1, b2, _, _ = meet(mesh, eye, f, ray)
             n = unit(blend(mesh.normals, mesh.faces, f, b1, b2))
             cosine[j, i] = abs(dot(n, ray))
