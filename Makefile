@@ -18,7 +18,7 @@ demo: $(VENV)/.gl
 	$(BIN)/seatlook demo --out $(OUT)
 
 test: $(VENV)/.gl $(VENV)/.dev
-	$(PYTEST) -m "not validate and not browser and not bench" $(TESTS)
+	$(PYTEST) -n auto --dist loadfile -m "not validate and not browser and not bench" $(TESTS)
 
 validate: $(VENV)/.gl $(VENV)/.dev
 	$(PYTEST) -m validate --timeout 3600 tests
