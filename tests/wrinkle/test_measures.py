@@ -1,5 +1,7 @@
 """The measures beside the paper's, on states whose answer is known."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -22,6 +24,24 @@ STATES = {
     "noise": (1e-6, 3e-7, 0.3, 0.7, 0.0, "slack"),
     "compressed both ways": (-0.01, -0.02, 0.3, 0.0, 0.0, "slack"),
 }
+
+
+def table():
+    """Rows of the table of edge cases in docs/indices.md."""
+    text = (Path(__file__).parents[2] / "docs" / "indices.md").read_text()
+    rows = text.partition("| major |")[2].splitlines()[2:]
+    cells = [[c.strip() for c in r.strip("|").split("|")] for r in rows]
+    return cells[: cells.index([""])]
+
+
+@pytest.mark.parametrize("cells", table(), ids=lambda c: c[2])
+def test_the_documented_edge_cases(cells):
+    major, minor, _, paper, signed, state = cells
+    strain = np.diag([float(major), float(minor)])[None]
+    assert wrinkle.stretch_ratio(strain)[0] == pytest.approx(float(paper), abs=1e-6)
+    assert wrinkle.signed_ratio(strain)[0] == pytest.approx(float(signed), abs=1e-9)
+    found = wrinkle.tension_state(strain, isotropic_membrane(0.3))
+    assert TENSION_STATES[found[0]] == state
 
 
 def turned(major, minor, angle):

@@ -28,15 +28,16 @@ def away(rest, rows=2, h=H, size=SIZE):
     return (np.minimum(rest, size - rest) > rows * h).all(axis=1)
 
 
-@pytest.mark.parametrize("kind", [k for k in KINDS if k != "sliver"])
-def test_sine_at_twelve_elements_is_within_five_percent(kind):
-    """Issue: rms error over peak after recovery; the plain mean loses 4 to 5 %."""
+@pytest.mark.parametrize("kind", KINDS)
+def test_sine_at_twelve_elements(kind):
+    """The rms error over the peak stays below 2 % (8 % on slivers); a plain mean is 5.5 % off."""
     amplitude, k = 0.0005, 2 * np.pi / WAVE
     solution = shaped(wave(amplitude, WAVE), h=H, kind=kind)
     rest = solution.cover.rest
     exact = amplitude * k**2 * np.sin(k * rest[:, 0])
     error = (recovered(solution)[:, 0, 0] - exact)[away(rest)]
-    assert np.sqrt((error**2).mean()) < 0.03 * amplitude * k**2
+    bound = 0.08 if kind == "sliver" else 0.02
+    assert np.sqrt((error**2).mean()) < bound * amplitude * k**2
 
 
 @pytest.mark.parametrize("kind", KINDS)
