@@ -16,12 +16,13 @@ from seatlook.errors import InputError, RenderError, did_you_mean
 from seatlook.model import Appearance, Camera, FloatArray, Light, Rig, Solution
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
+from seatlook.pbr.foam import FOAM
 from seatlook.pbr.kernels import bvh, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.kernels.stitch import Thread
 from seatlook.pbr.picture import Image
 from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, white_of
-from seatlook.pbr.surface import FOAM, Surface, drawn_surface, neighbour_mean
+from seatlook.pbr.surface import Surface, drawn_surface, neighbour_mean
 from seatlook.pbr.tables import load_tables
 from seatlook.pbr.texture import load_textures, texture_index
 
@@ -31,8 +32,8 @@ Looks = Appearance | Mapping[str, Appearance] | None
 TOP_STITCH = Thread(offset=0.005, pitch=0.005, length=0.0040, width=0.0009, lighter=0.06)
 # A grey card of 18 % fills the background.
 _CARD = 0.18
-# Foam in front of the cover by less than this [m] is foam the cover has compressed.
-_COMPRESSED = 0.08
+# Foam in front of the cover by less than this [m] is a coarse foam face that cuts through it.
+_COMPRESSED = 0.02
 # How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
 _OCCLUDER = 0.04
 
@@ -138,7 +139,6 @@ class Studio:
             cover_far, foam_far = np.empty(ids.shape), np.empty(ids.shape)
             front = surface.distances(mesh, eye, ids, cover_far)
             surface.distances(mesh, eye, foam, foam_far)
-            # The stored foam is at rest: where the cover presses on it, it would stick out.
             pressed = np.where(front, _COMPRESSED, 0.0)
             ids = np.where(foam_far < cover_far - pressed, foam, ids)
         if not (ids >= 0).any():

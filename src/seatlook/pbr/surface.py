@@ -9,17 +9,15 @@ import numpy as np
 from scipy import sparse
 
 from seatlook.errors import RenderError
-from seatlook.model import Appearance, FloatArray, Foam, IntArray, Solution
+from seatlook.model import FloatArray, IntArray, Solution
 from seatlook.pbr import seam
+from seatlook.pbr.foam import with_foam
 from seatlook.pbr.kernels.surface import Mesh
 from seatlook.pbr.subdivision import Refined, sharp_corners, subdivide
 
 # Refinement stops below this edge length [m], about a pixel of the named views, or at this size.
 _FINE = 0.0012
 _MOST_FACES = 500_000
-
-# Open-cell polyether, cream; judgement.
-FOAM = Appearance(albedo=np.array([0.62, 0.57, 0.42]), roughness=0.95, f0=0.02)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +98,7 @@ def drawn_surface(solution: Solution) -> Surface:
         mesh = _with_allowance(mesh, edges)
     k = len(mesh.faces)
     if cover.foam is not None:
-        mesh = _with_foam(mesh, cover.foam, len(cover.panel_names))
+        mesh = with_foam(mesh, cover.foam, len(cover.panel_names))
     return Surface(mesh, refined, n, m, k, np.array(cover.faces))
 
 
@@ -156,21 +154,6 @@ def _sum_to_vertices(values: FloatArray, faces: np.ndarray, n: int) -> FloatArra
     corner = faces.ravel()
     repeated = np.repeat(values, 3, axis=0)
     return np.column_stack([np.bincount(corner, repeated[:, k], minlength=n) for k in range(3)])
-
-
-def _with_foam(mesh: Mesh, foam: Foam, panel: int) -> Mesh:
-    n, k = len(mesh.vertices), len(foam.vertices)
-    x = np.array(foam.vertices)
-    faces = np.array(foam.faces)
-    return Mesh(
-        np.vstack([mesh.vertices, x]),
-        np.vstack([mesh.normals, vertex_normals(x, faces)]),
-        np.vstack([mesh.warp, np.zeros((k, 3))]),
-        np.vstack([mesh.uv, np.zeros((k, 2))]),
-        np.vstack([mesh.faces, faces + n]),
-        np.concatenate([mesh.panel, np.full(len(faces), panel)]),
-        np.vstack([mesh.seam, np.full((k, 2), np.inf)]),
-    )
 
 
 def _with_allowance(mesh: Mesh, edges: seam.SewnEdges) -> Mesh:

@@ -1,0 +1,79 @@
+"""Relief maps: slopes of a height, tiled, and filtered without losing their variance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from seatlook.model import Appearance
+from seatlook.pbr.kernels.grain import grain
+from seatlook.pbr.studio import pack_materials
+from seatlook.pbr.texture import MAPS, load_textures, texture_index
+
+
+def look(name, **change):
+    change = {"texture_scale": 0.001, "texture_depth": 1e-4, "roughness": 0.4, **change}
+    return pack_materials([Appearance(albedo=np.ones(3), texture=name, **change)])[0]
+
+
+@pytest.fixture(scope="module")
+def textures():
+    return load_textures()
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_slopes_close_around_the_tile(textures, name):
+    """A periodic height has no mean slope, and the coarsest level holds all the variance."""
+    which = MAPS.index(name)
+    fine = textures.texels[which][: textures.start[1]].astype(float)
+    coarse = textures.texels[which][textures.start[-1]].astype(float)
+    assert np.abs(fine[:, :2].mean(axis=0)).max() < 1e-4
+    variance = 0.5 * (fine[:, :2] ** 2).sum(axis=1).mean()
+    assert coarse[2] == pytest.approx(variance, rel=1e-3)
+    assert 0.5 < fine[:, 3].min() <= fine[:, 3].max() <= 1.0
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_far_away_the_relief_is_roughness(textures, name):
+    material = look(name)
+    su, sv, roughness, share = grain(textures, material, 0.01, 0.02, 1.0)
+    steep = 0.1
+    variance = steep**2 * textures.texels[MAPS.index(name)][textures.start[-1], 2]
+    assert abs(su) < 1e-3
+    assert abs(sv) < 1e-3
+    assert roughness == pytest.approx(min(1.0, (0.4**4 + 2 * variance) ** 0.25), rel=1e-5)
+    assert 0.5 < share <= 1
+
+
+def test_near_the_relief_is_slope(textures):
+    material = look("leather")
+    values = np.array(
+        [grain(textures, material, u, 0.02, 1e-6)[:3] for u in np.linspace(0, 0.06, 4000)]
+    )
+    assert np.abs(values[:, 0]).max() > 0.1
+    assert np.allclose(values[:, 2], 0.4, atol=1e-6)
+
+
+def test_slope_grows_with_depth_and_repeats_with_the_tile(textures):
+    shallow, deep = look("leather"), look("leather", texture_depth=2e-4)
+    a, b = (grain(textures, m, 0.0123, 0.0456, 1e-5) for m in (shallow, deep))
+    assert b[0] == pytest.approx(2 * a[0], rel=1e-6)
+    tile = textures.cells * 0.001
+    c = grain(textures, shallow, 0.0123 + 3 * tile, 0.0456 - tile, 1e-5)
+    assert c == pytest.approx(a, rel=1e-6, abs=1e-7)
+
+
+def test_contrast_falls_smoothly_with_distance(textures):
+    material = look("leather")
+    u = np.linspace(0, 0.064, 300)
+    spread = [
+        np.std([grain(textures, material, x, 0.01, width)[0] for x in u])
+        for width in (1e-4, 2e-4, 4e-4, 8e-4, 1.6e-3, 3.2e-3)
+    ]
+    assert spread == sorted(spread, reverse=True)
+    assert spread[-1] < 0.1 * spread[0]
+
+
+def test_no_depth_is_no_texture():
+    assert texture_index(Appearance(albedo=np.ones(3), texture="leather")) == -1
+    assert texture_index(Appearance(albedo=np.ones(3), texture_depth=1e-4)) == -1
