@@ -101,13 +101,7 @@ def read_layout(file: Path, words: Words, word: str) -> Layout:
     """Read the control words and locate everything; ``words`` is the whole first file."""
     control = _control(file, words)
     _refuse_what_is_not_followed(file, control)
-    at = 64 + control["extra"]
-    material_types, rigid_shells = np.zeros(0, dtype=np.int64), 0
-    if control["ndim"] == 5:
-        head = _part(file, words, at, 2, "material types")
-        rigid_shells = int(head[0])
-        material_types = _part(file, words, at + 2, control["nmmat"], "material types")
-        at += 2 + control["nmmat"]
+    material_types, rigid_shells, at = _material_types(file, words, control)
     nodes = at + control["ialemat"]
     shells = (
         nodes + 3 * control["numnp"] + 9 * abs(control["nel8"])
@@ -143,6 +137,16 @@ def read_layout(file: Path, words: Words, word: str) -> Layout:
         thickness=thickness,
         strain=strain,
     )
+
+
+def _material_types(file: Path, words: Words, control: dict[str, int]) -> tuple[Words, int, int]:
+    """Return the material type of each part, the number of rigid shells, the first word behind."""
+    at = 64 + control["extra"]
+    if control["ndim"] != 5:
+        return np.zeros(0, dtype=np.int64), 0, at
+    head = _part(file, words, at, 2, "material types")
+    types = _part(file, words, at + 2, control["nmmat"], "material types")
+    return types, int(head[0]), at + 2 + control["nmmat"]
 
 
 def _control(file: Path, words: Words) -> dict[str, int]:

@@ -16,7 +16,7 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.io._cards import Block, blocks
 from seatlook.io._initial_strain import SurfaceStrains, surface_strains
-from seatlook.io._shells import select, unit_in_metres
+from seatlook.io._shells import Selection, select, unit_in_metres
 from seatlook.io._toml import read_file
 from seatlook.model import FloatArray, IntArray, ShellResult, ShellState
 
@@ -85,9 +85,7 @@ def read_keyword(
             "*INITIAL_STRAIN_SHELL", got="none for these shells", file=file,
             expected="strains on at least two levels of the thickness, or a reference deck",
         )  # fmt: skip
-    t = _thickness(file, deck, shells.element_ids, shells.part, chosen.elements, scale)
-    if thickness is not None:
-        t = np.full(len(shells), thickness)
+    t = _thickness(deck, chosen, scale) if thickness is None else np.full(len(shells), thickness)
     _check_thickness(file, t, shells.element_ids)
     state = ShellState(
         time=0.0,
@@ -272,13 +270,11 @@ def _reference(file: Path, node_ids: IntArray, scale: float) -> FloatArray:
     return positions[at]
 
 
-def _thickness(
-    file: Path, deck: _Deck, ids: IntArray, part: IntArray, elements: IntArray, scale: float
-) -> FloatArray:
+def _thickness(deck: _Deck, chosen: Selection, scale: float) -> FloatArray:
     """Thickness [m] of each shell: its own, else that of its part's section, else nan."""
-    own = np.concatenate(deck.shell_thickness)[elements]
+    own = np.concatenate(deck.shell_thickness)[chosen.elements]
     of_part = {p: deck.sections.get(s, np.nan) for p, s in deck.part_sections.items()}
-    section = np.array([of_part.get(p, np.nan) for p in part.tolist()])
+    section = np.array([of_part.get(p, np.nan) for p in chosen.shells.part.tolist()])
     return np.where(np.isfinite(own), own, section) * scale
 
 
