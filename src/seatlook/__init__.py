@@ -11,7 +11,7 @@ __version__ = "0.1.0"
 _PUBLIC: dict[str, str] = {
     "Camera": "seatlook.model",
     "Cover": "seatlook.model",
-    "Evaluation": "seatlook.evaluate",
+    "Evaluation": "seatlook.evaluation",
     "InputError": "seatlook.errors",
     "Rig": "seatlook.model",
     "Scene": "seatlook.model",
@@ -20,6 +20,7 @@ _PUBLIC: dict[str, str] = {
     "WrinkleMap": "seatlook.model",
     "assemble": "seatlook.assembly",
     "bulb": "seatlook.model",
+    "evaluate": "seatlook.evaluation",
     "load_scene": "seatlook.io",
     "named_view": "seatlook.model",
     "read_material": "seatlook.io",

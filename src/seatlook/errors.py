@@ -2,13 +2,13 @@
 
 ::
 
-    SeatlookError
+    SeatlookError                   no result                                exit 3
     ├── InputError(ValueError)      a file, option or argument is wrong      exit 2
     │   └── AssemblyError           the parts are fine, together they are not
-    ├── SolverError                 the solver cannot give a result          exit 3
+    ├── SolverError                 the solver cannot give a result
     │   ├── ConvergenceError        carries the last Solution
     │   └── InvertedElementError
-    └── RenderError                 no picture, or a wrong one               exit 3
+    └── RenderError                 no picture, or a wrong one
         └── NoOffscreenContext      no software GL library on this machine
 
     InputWarning(UserWarning)       an input is readable but unusual, or not all of it is used
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 class SeatlookError(Exception):
     """Base of all errors; ``exit_code`` is what the command line returns."""
 
-    exit_code: ClassVar[int] = 1
+    exit_code: ClassVar[int] = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,8 +99,6 @@ class InputWarning(UserWarning):
 class SolverError(SeatlookError):
     """The solver cannot give a result."""
 
-    exit_code = 3
-
 
 class ConvergenceError(SolverError):
     """The solver stopped before equilibrium; ``solution`` is the last state it had."""
@@ -116,8 +114,6 @@ class InvertedElementError(SolverError):
 
 class RenderError(SeatlookError):
     """No picture, or one that would be wrong."""
-
-    exit_code = 3
 
 
 class NoOffscreenContext(RenderError):

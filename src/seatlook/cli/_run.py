@@ -15,7 +15,7 @@ from seatlook.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from seatlook.evaluate import Evaluation
+    from seatlook.evaluation import Evaluation
     from seatlook.model import Scene, Solution
     from seatlook.wrinkle import ZoneRow
 
@@ -92,7 +92,7 @@ def evaluate(
 
 def evaluate_scene(scene: Scene, out: Path, *, resume: bool, json: bool) -> int:
     """Evaluate a scene, print its zones and return the exit code."""
-    from seatlook.evaluate import evaluate as run_chain
+    from seatlook.evaluation import evaluate as run_chain
     from seatlook.report.gather import write_report
 
     with progress() as show:
@@ -157,7 +157,7 @@ def wrinkle(
         given more than once.
     """
     from seatlook import io
-    from seatlook.evaluate import wrinkle_map
+    from seatlook.evaluation import wrinkle_map
     from seatlook.wrinkle import zone_table
 
     read = load(scene)
@@ -192,7 +192,7 @@ def render(
     view
         Camera of the scene. The first if not given.
     """
-    from seatlook.evaluate import draw_maps, draw_pictures, wrinkle_map
+    from seatlook.evaluation import draw_maps, draw_pictures, wrinkle_map
     from seatlook.pbr import offscreen_backend
 
     offscreen_backend()

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from seatlook import __version__
-from seatlook.evaluate import MAPS, RESULT, Evaluation, label
+from seatlook.evaluation import MAPS, RESULT, Evaluation, label
 from seatlook.model import Light, Rig, Solution
 from seatlook.pbr import ev100, lux_at_seat, offscreen_backend
 from seatlook.report.chart import number
