@@ -30,10 +30,11 @@ class ShellWrinkles:
     ----------
     element : (k,) int64           into ``Shells``; deleted elements are left out
     indices : WrinkleMap           fields (k,)
-    strain_mid : (k, 2, 2)         in the element plane, first axis along the first side
+    strain_mid, strain_half : (k, 2, 2)   mid strain, and half of top minus bottom, in the element
+        plane with the first axis along its middle line
+    sign : (k,) float64            -1 where the element was turned over
     area : (k,) float64 [m2]
     size : (k,) float64 [m]        mean length of the sides
-    turned : elements whose normal was turned over to agree with its neighbours
     one_sided : pieces that have no two sides
     source : what C comes from; "shape" where there are no strains, or where both surfaces carry
         the same ones although the shells are bent (membrane elements)
@@ -42,11 +43,17 @@ class ShellWrinkles:
     element: IntArray
     indices: WrinkleMap
     strain_mid: FloatArray
+    strain_half: FloatArray
+    sign: FloatArray
     area: FloatArray
     size: FloatArray
-    turned: int
     one_sided: int
     source: StrainSource
+
+    @property
+    def turned(self) -> int:
+        """Number of elements whose normal was turned over to agree with its neighbours."""
+        return int((self.sign < 0).sum())
 
 
 def shell_indices(
@@ -80,7 +87,7 @@ def shell_indices(
             f"state at time {state.time:g}", got="no shells left", expected="shells not deleted"
         )
     corners = shells.corners[element]
-    frame, area = _frames(shells, state.positions, element)
+    frame, area = element_frames(shells, state.positions, element)
     _check_thickness(shells, state, element)
     side = agree(corners, area)
     sign = side.sign * _outward(side.piece, side.sign, frame, area, facing)
@@ -93,18 +100,25 @@ def shell_indices(
         element=element,
         indices=indices,
         strain_mid=mid,
+        strain_half=half,
+        sign=sign,
         area=area,
         size=_mean_side(state.positions[corners]),
-        turned=int((sign < 0).sum()),
         one_sided=side.one_sided,
         source=source,
     )
 
 
-def _frames(
+def element_frames(
     shells: Shells, positions: FloatArray, element: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return axes (k, 3, 3) as rows e1, e2, n, and areas; n follows the order of the corners."""
+    """Return axes (k, 3, 3) as rows e1, e2, n, and areas (k,); n follows the corners' order.
+
+    Raises
+    ------
+    InputError
+        Shells without area, by their numbers.
+    """
     p = positions[shells.corners[element]]
     d1, d2 = p[:, 2] - p[:, 0], p[:, 3] - p[:, 1]
     normal = np.cross(d1, d2)
@@ -192,7 +206,7 @@ def _mid_strain(
         raise InputError.single(
             "strains", got="none, and no reference shape", expected="one of them"
         )
-    rest_frame, _ = _frames(shells, shells.reference, element)
+    rest_frame, _ = element_frames(shells, shells.reference, element)
     rest = _midlines(shells.reference[shells.corners[element]], rest_frame)
     now = _midlines(positions[shells.corners[element]], frame)
     F = now @ np.linalg.inv(rest)
@@ -219,7 +233,7 @@ def _bending_of_shape(
     live = row[owner] >= 0
     turned = sign[row[owner[live]]] < 0
     faces = np.where(turned[:, None], faces[live][:, ::-1], faces[live])
-    rest_frame, _ = _frames(shells, shells.reference, element)
+    rest_frame, _ = element_frames(shells, shells.reference, element)
     now = _at_elements(state.positions, faces, shells.corners[element], frame)
     rest = _at_elements(shells.reference, faces, shells.corners[element], rest_frame)
     return 0.5 * state.thickness[element, None, None] * (now - rest)
