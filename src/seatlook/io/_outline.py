@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 import shapely.ops
 
 from seatlook.errors import InputError
-from seatlook.model import FloatArray, IntArray
+from seatlook.io._cuts import close_cuts
+from seatlook.model import FloatArray, IntArray, Notch
 
 MEETING_MM = 0.1  # exporters write 2 to 4 decimals of a millimetre or an inch
 CORNER_DEG = 30.0
@@ -23,6 +24,7 @@ class Chain:
     points: FloatArray
     closed: bool
     joints: FloatArray
+    notches: tuple[Notch, ...] = ()
 
     @property
     def area(self) -> float:
@@ -131,8 +133,8 @@ def _off_axis(line: FloatArray, axis: FloatArray) -> list[FloatArray]:
     return [p for p in parts if len(p) > 1]
 
 
-def closed_outline(chains: Sequence[Chain], *, key: str) -> Chain:
-    """Return the one closed chain, counter-clockwise.
+def closed_outline(chains: Sequence[Chain], *, key: str, smallest_notch: float = 0.0) -> Chain:
+    """Return the one closed chain, counter-clockwise, without the cuts below a size [mm].
 
     Raises
     ------
@@ -151,8 +153,12 @@ def closed_outline(chains: Sequence[Chain], *, key: str) -> Chain:
     if len(chains) != 1:
         raise InputError.single(key, got=f"{len(chains)} closed outlines", expected="one")
     chain = chains[0]
-    check_simple(chain.points, key=key)
-    return chain if chain.area > 0 else Chain(_reversed(chain.points), True, chain.joints)
+    if chain.area < 0:
+        chain = replace(chain, points=_reversed(chain.points))
+    points, notches = close_cuts(chain.points, smallest_notch)
+    # A slit without width is drawn there and back, so it must be gone before this.
+    check_simple(points, key=key)
+    return replace(chain, points=points, notches=notches)
 
 
 def check_simple(points: FloatArray, *, key: str) -> None:

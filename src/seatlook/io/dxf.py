@@ -18,6 +18,7 @@ import numpy as np
 from ezdxf.lldxf.const import DXFError
 
 from seatlook.errors import InputError, InputWarning, Problem, did_you_mean
+from seatlook.io._cuts import with_cuts
 from seatlook.io._dxf_entities import (
     BOUNDARY,
     CUT_OUT,
@@ -49,11 +50,17 @@ from seatlook.model import FloatArray, Notch, Panel
 
 MM_PER_UNIT = {"metric": 1.0, "english": 25.4}
 
+SMALLEST_NOTCH = 0.005  # m
+
 Units = Literal["metric", "english"]
 
 
 def read_dxf(
-    path: Path, *, size: str | None = None, units: Units | None = None
+    path: Path,
+    *,
+    size: str | None = None,
+    units: Units | None = None,
+    smallest_notch: float = SMALLEST_NOTCH,
 ) -> tuple[Panel, ...]:
     """Read the pieces of a pattern.
 
@@ -61,6 +68,8 @@ def read_dxf(
     ----------
     size : the size to read; without it the sample size, or the only one there is
     units : for a file without a UNITS text
+    smallest_notch : float [m]
+        Cuts into an outline that are less deep and less wide are closed and become notches.
 
     Returns
     -------
@@ -81,18 +90,20 @@ def read_dxf(
         titles = _titles(document)
         scale = _scale(path, titles, units)
         blocks = _blocks(path, document, titles, size)
-        return _panels(path, blocks, scale)
+        return _panels(path, blocks, scale, 1e3 * smallest_notch)
     # An entity without the values it must have; the library gives None for some.
     except (DXFError, AttributeError, TypeError) as error:
         raise _refusal(path, error) from error
 
 
-def _panels(path: Path, blocks: dict[str, Any], scale: float) -> tuple[Panel, ...]:
+def _panels(
+    path: Path, blocks: dict[str, Any], scale: float, smallest_notch: float
+) -> tuple[Panel, ...]:
     problems: list[Problem] = []
     panels: list[Panel] = []
     for name, block in blocks.items():
         try:
-            panels.append(_Piece.read(name, block, scale).panel())
+            panels.append(_Piece.read(name, block, scale).panel(smallest_notch))
         except InputError as error:
             problems += error.problems
     if problems:
@@ -207,9 +218,10 @@ class _Piece:
             line_names=read_line_names(block, scale),
         )
 
-    def panel(self) -> Panel:
-        cut = closed_outline(self.boundary, key=f"piece {self.name}, layer 1")
-        outline = self._sew_line(cut)
+    def panel(self, smallest_notch: float) -> Panel:
+        key = f"piece {self.name}, layer 1"
+        cut = closed_outline(self.boundary, key=key, smallest_notch=smallest_notch)
+        outline = self._sew_line(cut, smallest_notch)
         _check_size(self.name, cut.points)
         if not self.grain:
             raise InputError.single(
@@ -223,16 +235,16 @@ class _Piece:
             corners=corners(outline.points, np.vstack([self.marks, outline.joints])),
             cut_outline=mm * cut.points,
             grain=along / np.hypot(*along),
-            notches=tuple(self.notches),
+            notches=with_cuts(self.notches, (*cut.notches, *outline.notches)),
             internal_lines=MappingProxyType(self._internal_lines()),
         )
 
-    def _sew_line(self, cut: Chain) -> Chain:
+    def _sew_line(self, cut: Chain, smallest_notch: float) -> Chain:
         key = f"piece {self.name}, layer 14"
         if not self.sew:
             return cut
         if all(c.closed for c in self.sew):
-            return closed_outline(self.sew, key=key)
+            return closed_outline(self.sew, key=key, smallest_notch=smallest_notch)
         return trimmed(cut, [c for c in self.sew if not c.closed], key=key)
 
     def _internal_lines(self) -> dict[str, FloatArray]:

@@ -16,6 +16,7 @@ from seatlook.io._scene_ties import make_boxes, make_frames, make_hooks, make_li
 from seatlook.io._schema import known, read_table, shown
 from seatlook.io._toml import Document, Key, read_document
 from seatlook.io._views import make_cameras, make_rigs
+from seatlook.io.dxf import SMALLEST_NOTCH
 from seatlook.io.material import material_path, read_foam_material, read_material
 from seatlook.io.mesh import read_foam
 from seatlook.io.seams import read_pattern
@@ -113,13 +114,19 @@ class _Reader:
         return path
 
     def pattern(self) -> Pattern | None:
-        row = self.row["pattern"]
+        row, notch = self.row["pattern"], self.row["mesh"]["smallest_notch_mm"]
         path = self.file(("pattern", "file"), row["file"])
         seams = self.file(("pattern", "seams"), row["seams"])
         if path is None or seams is None:
             return None
         try:
-            pattern = read_pattern(path, seams, size=row["size"], units=row["units"])
+            pattern = read_pattern(
+                path,
+                seams,
+                size=row["size"],
+                units=row["units"],
+                smallest_notch=SMALLEST_NOTCH if notch is None else notch,
+            )
         except InputError as error:
             self.document.note(("pattern",), error)
             return None

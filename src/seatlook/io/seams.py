@@ -31,10 +31,10 @@ from seatlook.io._schema import (
     shown,
 )
 from seatlook.io._toml import Document, quoted, read_document
-from seatlook.io.dxf import Units, read_dxf
+from seatlook.io.dxf import SMALLEST_NOTCH, Units, read_dxf
 from seatlook.model import Edge, FloatArray, Panel, Pattern, Seam
 
-# A new pattern format is one reader here: path, size and units in, panels out.
+# A new pattern format is one reader here: path, size, units, smallest notch in, panels out.
 READERS: dict[str, Callable[..., tuple[Panel, ...]]] = {".dxf": read_dxf}
 
 SNAP_MM = 2.0
@@ -71,18 +71,27 @@ _KEYS: dict[str, Kind] = {
 
 
 def read_panels(
-    path: Path, *, size: str | None = None, units: Units | None = None
+    path: Path,
+    *,
+    size: str | None = None,
+    units: Units | None = None,
+    smallest_notch: float = SMALLEST_NOTCH,
 ) -> tuple[Panel, ...]:
     """Read the panels of a pattern file of any format in ``READERS``."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         expected = f"one of {', '.join(READERS)}"
         raise InputError.single("file", got=shown(path.suffix), expected=expected, file=path)
-    return reader(path, size=size, units=units)
+    return reader(path, size=size, units=units, smallest_notch=smallest_notch)
 
 
 def read_pattern(
-    path: Path, seams: Path, *, size: str | None = None, units: Units | None = None
+    path: Path,
+    seams: Path,
+    *,
+    size: str | None = None,
+    units: Units | None = None,
+    smallest_notch: float = SMALLEST_NOTCH,
 ) -> Pattern:
     """Read a pattern and how it is sewn.
 
@@ -90,6 +99,7 @@ def read_pattern(
     ----------
     path : pattern file (AAMA DXF)
     seams : seams file; see docs/scene.md
+    size, units, smallest_notch : as in ``read_dxf``
 
     Raises
     ------
@@ -98,7 +108,8 @@ def read_pattern(
         corner, a seam of an unknown edge, a length that is not the one stated. All problems of the
         seams file are reported together.
     """
-    return read_seams(seams, read_panels(path, size=size, units=units))
+    panels = read_panels(path, size=size, units=units, smallest_notch=smallest_notch)
+    return read_seams(seams, panels)
 
 
 def read_seams(path: Path, panels: tuple[Panel, ...]) -> Pattern:

@@ -104,7 +104,7 @@ class Scene:
     digest : sha256 of the scene file and of every file it names
     materials : panel name -> Material
     placement : panel name -> Pose; a panel without one gets an automatic pose
-    element_size : float [m]; smallest_notch : float [m], smaller cuts are ignored
+    element_size : float [m]; smallest_notch : float [m], below which reading closed cuts
     c_threshold : float [1/m]
     textures : name -> Appearance, or None for the panels' own materials
     """
