@@ -178,6 +178,7 @@ def _with_bar(
     draw.text((size, size // 2), title, fill=_INK, font=font)
     top, bottom = height // 5, height - height // 5
     left = width - 6 * size
+    draw.rectangle((left - size, top - 2 * size, width, bottom + size), fill=(_PAPER,) * 3)
     bar = np.rint(255 * srgb_encode(table)).astype(np.uint8)
     rows = np.linspace(len(bar) - 1, 0, bottom - top).astype(np.int64)
     picture.paste(Pillow.fromarray(np.repeat(bar[rows][:, None], size, axis=1)), (left, top))

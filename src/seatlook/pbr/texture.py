@@ -7,31 +7,32 @@ import functools
 import numpy as np
 
 from seatlook.model import Appearance, FloatArray
-from seatlook.pbr.kernels.grain import Textures
+from seatlook.pbr.kernels.grain import LEATHER, SUEDE, WEAVE, Textures
 
 SIZE = 1024
 CELLS = 64
-# Texture names in the order of the maps; "none" has no map.
-MAPS = ("leather", "suede", "weave")
+# "none" has no map.
+MAPS = {"leather": LEATHER, "suede": SUEDE, "weave": WEAVE}
 
 
 def texture_index(appearance: Appearance) -> int:
     """Index of the map of an appearance, -1 where it has no relief."""
     if appearance.texture == "none" or appearance.texture_depth == 0:
         return -1
-    return MAPS.index(appearance.texture)
+    return MAPS[appearance.texture]
 
 
 @functools.cache
 def load_textures() -> Textures:
     """Make all maps once per process."""
-    reliefs = {"leather": _leather(), "suede": _suede(), "weave": _weave()}
+    reliefs = {LEATHER: _leather(), SUEDE: _suede(), WEAVE: _weave()}
     levels = SIZE.bit_length()
     sizes = [(SIZE >> k) ** 2 for k in range(levels)]
     start = np.concatenate([[0], np.cumsum(sizes)])
     texels = np.empty((len(MAPS), start[-1], 4), dtype=np.float32)
-    for which, name in enumerate(MAPS):
-        for k, level in enumerate(_levels(*reliefs[name])):
+    for which, (height, share) in reliefs.items():
+        low, high = np.percentile(height, [5, 95])
+        for k, level in enumerate(_levels(height / (high - low), share)):
             texels[which, start[k] : start[k + 1]] = level
     return Textures(texels, start[:-1].astype(np.int64), SIZE, float(CELLS))
 

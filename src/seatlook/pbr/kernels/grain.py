@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.noise import smooth
 
 
 class Textures(NamedTuple):
@@ -22,6 +23,11 @@ class Textures(NamedTuple):
     start: npt.NDArray[np.int64]
     size: int
     cells: float
+
+
+# Order of the maps, and slope by which a stroke leans the nap.
+LEATHER, SUEDE, WEAVE = 0, 1, 2
+_STROKE = 0.07
 
 
 @leaf()
@@ -70,4 +76,8 @@ def grain(textures, material, u, v, width):
     steep = material.texture_depth / material.texture_scale
     alpha = material.roughness**2
     alpha = np.sqrt(alpha * alpha + 2.0 * steep * steep * variance)
+    if material.texture == SUEDE:
+        # Marks of the hand: the nap lies this way or that over a few centimetres.
+        mark = smooth(u / 0.045 + 0.3 * smooth(u / 0.08, v / 0.08, 3), v / 0.022, 1)
+        su, share = su + _STROKE / max(steep, 1e-6) * mark, share * (1.0 + 0.07 * mark - 0.07)
     return steep * su, steep * sv, min(1.0, np.sqrt(alpha)), share

@@ -7,6 +7,7 @@ from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.bvh import nearest, new_stack, occluded
+from seatlook.pbr.kernels.noise import even
 from seatlook.pbr.kernels.shade import arriving
 from seatlook.pbr.kernels.surface import (
     along,
@@ -25,23 +26,7 @@ from seatlook.pbr.kernels.surface import (
 _ABOVE = 2e-5
 # Beyond this cosine not even the grain turns to the light.
 _TURNED = -0.15
-_LOW = np.uint64(0xFFFFFFFF)
-_PRIMES = (np.uint64(73856093), np.uint64(19349663), np.uint64(83492791))
-_MIX = (np.uint64(0x7FEB352D), np.uint64(0x846CA68B))
 _EMPTY, _HIDDEN, _LIT, _AWAY = 0, 1, 2, 3
-
-
-@leaf()
-def _hash(i, j, k):
-    """Even number in [0, 1) from three small integers; Wellons' lowbias32.
-
-    Numba widens 32-bit products, so each one is cut back by hand.
-    """
-    h = (np.uint64(i) * _PRIMES[0]) ^ (np.uint64(j) * _PRIMES[1]) ^ (np.uint64(k) * _PRIMES[2])
-    h &= _LOW
-    h = ((h ^ (h >> np.uint64(16))) * _MIX[0]) & _LOW
-    h = ((h ^ (h >> np.uint64(15))) * _MIX[1]) & _LOW
-    return np.float64(h ^ (h >> np.uint64(16))) / 4294967296.0
 
 
 @leaf()
@@ -145,7 +130,7 @@ def shadows(bvh, mesh, eye, ids, lights, sizes, k, factor, rays, reach, out):
                 if dot(n, arriving(lights, k, p)[0]) <= _TURNED:
                     out[j, i] = 0.0
                     continue
-                u, v, seen = _hash(x, y, 2 * k), _hash(x, y, 2 * k + 1), 0
+                u, v, seen = even(x, y, 2 * k), even(x, y, 2 * k + 1), 0
                 total = rays * factor * factor
                 for s in range(rays):
                     # Roberts' R2 sequence over all rays of a pixel, shifted per pixel.
@@ -184,7 +169,7 @@ def gather(bvh, mesh, strata, hits):
         p, n = row(mesh.vertices, i), row(mesh.normals, i)
         t, s = _across(n)
         o = along(p, 10 * _ABOVE, n)
-        turn, shift = _hash(i, 0, 0), _hash(i, 1, 0)
+        turn, shift = even(i, 0, 0), even(i, 1, 0)
         for q in range(strata * strata):
             a = (q // strata + shift) / strata
             phi = 2.0 * np.pi * (q % strata + turn) / strata
