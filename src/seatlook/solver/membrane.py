@@ -91,9 +91,9 @@ class Membrane:
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
         """Second derivative (3n, 3n) [N/m]; ``definite`` keeps the tensile part of the stress."""
         self._deform(x)
-        edges, (chord, arc) = self._edges, self._split
+        of_face = self._edges.of_face
         material = np.empty((len(self._area), 3, 3))
-        kernels.curvatures(
+        kernels.edge_stiffness(
             self._E,
             self._natural,
             self._area,
@@ -102,35 +102,39 @@ class Membrane:
             self._constants,
             material,
         )
-        stress = kernels.laws(self._E, self._fabric, *self._law, self._constants)
-        if definite:
-            kernels.clamp(stress)
-        share = self._area[:, None] * np.einsum("tck,tc->tk", self._natural, stress)
-        of_face = edges.of_face
-        pull = np.bincount(of_face.ravel(), share.ravel(), minlength=len(edges.ends))
-        bend = np.maximum(pull, 0.0) if definite else pull
-        twelfth = edges.length**2 / 12.0
-        along = (x[edges.ends[:, 1]] - x[edges.ends[:, 0]]) / edges.length[:, None]
-        bowed = twelfth[:, None] * self._bow
-        row = np.repeat(np.arange(len(edges.ends)), np.diff(chord.indptr))
-        rates = along[row] * chord.data[:, None] + bowed[row] * arc.data[:, None]
-        jacobian = csr_array(
-            (
-                rates.ravel(),
-                (3 * chord.indices[:, None] + np.arange(3)).ravel(),
-                3 * chord.indptr,
-            ),
-            shape=(len(edges.ends), x.size),
-        )
         pairs = (np.repeat(of_face, 3, axis=1).ravel(), np.tile(of_face, (1, 3)).ravel())
-        coupled = csr_array((material.ravel(), pairs), shape=(len(pull), len(pull)))
-        geometric = chord.T @ chord.multiply(pull[:, None])
-        geometric = geometric + arc.T @ arc.multiply((twelfth * bend)[:, None])
-        return csc_array(jacobian.T @ (coupled @ jacobian) + kron(geometric, eye_array(3)))
+        count = len(self._edges.ends)
+        coupled = csr_array((material.ravel(), pairs), shape=(count, count))
+        rates = self._rates(x)
+        geometric = self._geometric(definite)
+        return csc_array(rates.T @ (coupled @ rates) + kron(geometric, eye_array(3)))
 
     def stiffness(self) -> csc_array:
         """Scalar stiffness (n, n) [N/m] of plane triangles, warp and weft each with its own."""
         return self._laplacian
+
+    def _rates(self, x: FloatArray) -> csr_array:
+        """Derivative (e, 3n) of the edge strains by the positions."""
+        edges, (chord, arc) = self._edges, self._split
+        along = (x[edges.ends[:, 1]] - x[edges.ends[:, 0]]) / edges.length[:, None]
+        bowed = edges.length[:, None] ** 2 / 12.0 * self._bow
+        row = np.repeat(np.arange(len(edges.ends)), np.diff(chord.indptr))
+        values = along[row] * chord.data[:, None] + bowed[row] * arc.data[:, None]
+        columns = 3 * chord.indices[:, None] + np.arange(3)
+        shape = (len(edges.ends), x.size)
+        return csr_array((values.ravel(), columns.ravel(), 3 * chord.indptr), shape=shape)
+
+    def _geometric(self, definite: bool) -> csr_array:
+        """Stiffness (n, n) of the stress at hand; chords and arcs of edges pull like strings."""
+        edges, (chord, arc) = self._edges, self._split
+        stress = kernels.laws(self._E, self._fabric, *self._law, self._constants)
+        if definite:
+            kernels.clamp(stress)
+        share = self._area[:, None] * np.einsum("tck,tc->tk", self._natural, stress)
+        pull = np.bincount(edges.of_face.ravel(), share.ravel(), minlength=len(edges.ends))
+        bend = edges.length**2 / 12.0 * (np.maximum(pull, 0.0) if definite else pull)
+        strings = chord.T @ chord.multiply(pull[:, None])
+        return csr_array(strings + arc.T @ arc.multiply(bend[:, None]))
 
     def _deform(self, x: FloatArray) -> None:
         edges = self._edges

@@ -64,14 +64,22 @@ class Potential:
     ) -> None:
         self.elastic, self.others, self.free = tuple(elastic), tuple(others), free
         self._index = np.flatnonzero(free)
-        self.rounding = 0.0
 
     def value(self, x: FloatArray) -> tuple[float, FloatArray]:
         """Return the potential [J] and its gradient [N]."""
         gradient = np.zeros_like(x)
-        parts = [term.value(x, gradient) for term in (*self.elastic, *self.others)]
-        self.rounding = 1e-12 * sum(map(abs, parts))
-        return float(sum(parts)), gradient
+        total = sum(term.value(x, gradient) for term in (*self.elastic, *self.others))
+        return float(total), gradient
+
+    def rounding(self, x: FloatArray) -> float:
+        """Return the noise of the potential [J]: what translations change, that should not."""
+        size = np.abs(x).max()
+        energies = [
+            sum(term.value(x + share * size, np.zeros_like(x)) for term in self.elastic)
+            for share in (0.0, 0.0717, -0.1393, 0.2371)
+        ]
+        loads = sum(abs(term.value(x, np.zeros_like(x))) for term in self.others)
+        return float(2.0 * np.ptp(energies) + 1e-14 * (abs(energies[0]) + loads))
 
     def residual(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the largest force out of balance over the mean elastic nodal force."""
@@ -166,12 +174,13 @@ def line_search(
     slope = float((gradient * step).sum())
     longest = float(np.linalg.norm(step, axis=1).max())
     share = min(1.0, max_step / longest) if longest > 0.0 else 1.0
+    noise = potential.rounding(x) if abs(slope) < 1e-8 * abs(energy) else 0.0
     while share > _SHORTEST:
         trial = x + share * step
         value, fresh = potential.value(trial)
         if value <= energy + _ARMIJO * share * slope:
             return trial, value, fresh
-        if value <= energy + potential.rounding and abs((fresh * step).sum()) <= 0.5 * abs(slope):
+        if value <= energy + noise and abs((fresh * step).sum()) <= 0.5 * abs(slope):
             return trial, value, fresh
         share *= 0.5
     return None

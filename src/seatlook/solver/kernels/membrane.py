@@ -145,7 +145,7 @@ def forces(x, pull, ends, length, start, nodes, weights, bow, gradient):
 
 
 @njit(cache=True)
-def curvatures(E, natural, area, fabric, tables, counts, constants, out):
+def edge_stiffness(E, natural, area, fabric, tables, counts, constants, out):
     """Second derivative (m, 3, 3) [J] of every triangle's energy by its three edge strains."""
     for t in range(len(E)):
         f = fabric[t]
