@@ -19,14 +19,13 @@ from seatlook.wrinkle.measures import (
     TENSION_STATES,
     Surface,
     isotropic_membrane,
-    net_curvature,
     signed_ratio,
     surface_of,
     tension_state,
     threshold_of_radius,
     wrinkle_strain,
 )
-from seatlook.wrinkle.recovery import design_curvature, low_passed, recover, recovery_error
+from seatlook.wrinkle.recovery import low_passed, recover, recovery_error, shape_curvature
 from seatlook.wrinkle.section import Section, section
 from seatlook.wrinkle.shells import ShellWrinkles, shell_indices
 from seatlook.wrinkle.texture import (
@@ -56,18 +55,17 @@ __all__ = [
     "compression_wrinkle",
     "curvature_index",
     "curvature_tensor",
-    "design_curvature",
     "distortion",
     "distortion_table",
     "isotropic_membrane",
     "low_passed",
-    "net_curvature",
     "quantile",
     "recover",
     "recovery_error",
     "relative_curvature",
     "section",
     "section_across",
+    "shape_curvature",
     "shell_indices",
     "signed_ratio",
     "stretch_ratio",

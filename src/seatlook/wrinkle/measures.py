@@ -15,8 +15,8 @@ from seatlook.errors import InputError
 from seatlook.kinematics import principal_values
 from seatlook.model import FloatArray, IntArray, Solution, WrinkleMap
 from seatlook.model.scene import CurvatureMode
-from seatlook.wrinkle.equations import curvature_tensor, relative_curvature, wrinkle_index
-from seatlook.wrinkle.recovery import design_curvature, low_passed
+from seatlook.wrinkle.equations import relative_curvature, wrinkle_index
+from seatlook.wrinkle.recovery import low_passed, shape_curvature
 
 DEAD_BAND = 1e-3  # strains below it count as none
 SLACK, WRINKLED, TAUT = 0, 1, 2
@@ -30,16 +30,14 @@ class Surface:
     Parameters
     ----------
     strain_mid : (m, 2, 2)         Green strain in warp/weft axes
-    curvature : (m, 2, 2) [1/m]    curvature tensor K
-    design : (m, 2, 2) [1/m]       curvature of the shape that was meant
+    net : (m, 2, 2) [1/m]          curvature of the shape minus that of the shape that was meant
     membrane : (m, 3, 3) [N/m]     (S11, S22, S12) = D (E11, E22, 2 E12)
     indices : WrinkleMap           the paper's
     c_threshold : float or (m,) [1/m]
     """
 
     strain_mid: FloatArray
-    curvature: FloatArray
-    design: FloatArray
+    net: FloatArray
     membrane: FloatArray
     indices: WrinkleMap
     c_threshold: float | FloatArray
@@ -58,13 +56,17 @@ def surface_of(
     ----------
     design : (n, 3) float64 [m]    the shape that was meant; without it the solved one with waves
         below 45 mm removed between seams and hooks
+
+    Notes
+    -----
+    Both curvatures of ``net`` are fitted to the shapes, so that their errors at panel edges cancel;
+    against the strains' curvature they would add wrinkles there.
     """
     cover = solution.cover
     shape = low_passed(cover, solution.positions) if design is None else design
     return Surface(
         strain_mid=solution.strain_mid,
-        curvature=curvature_tensor(solution.strain_top, solution.strain_bottom, cover.thickness),
-        design=design_curvature(cover, shape),
+        net=shape_curvature(cover, solution.positions) - shape_curvature(cover, shape),
         membrane=np.stack([m.fabric.membrane_matrix for m in cover.materials])[cover.panel],
         indices=indices,
         c_threshold=c_threshold,
@@ -130,12 +132,6 @@ def tension_state(
     return np.where(major < dead_band, SLACK, np.where(compressed, WRINKLED, TAUT)).astype(np.int64)
 
 
-def net_curvature(curvature: FloatArray, design: FloatArray) -> FloatArray:
-    """Deepest valley (m,) [1/m] of K minus the design's K; negative in a valley not meant."""
-    _, valley = principal_values(curvature - design)
-    return valley
-
-
 def threshold_of_radius(radius: float | FloatArray, curvature: CurvatureMode) -> FloatArray:
     """C_threshold [1/m] for the bending radius [m] at which a material shows its first wrinkle.
 
@@ -160,8 +156,8 @@ def threshold_of_radius(radius: float | FloatArray, curvature: CurvatureMode) ->
 
 def w2_net(surface: Surface) -> FloatArray:
     """W2 of the net curvature: what the design does not ask for (m,)."""
-    net = net_curvature(surface.curvature, surface.design)
-    return wrinkle_index(relative_curvature(net, surface.c_threshold))
+    _, valley = principal_values(surface.net)
+    return wrinkle_index(relative_curvature(valley, surface.c_threshold))
 
 
 def excess_strain(surface: Surface) -> FloatArray:

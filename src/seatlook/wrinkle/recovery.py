@@ -90,8 +90,8 @@ def low_passed(
     return smooth
 
 
-def design_curvature(cover: Cover, positions: FloatArray) -> FloatArray:
-    """Curvature (m, 2, 2) [1/m] of a shape of the cover, in warp/weft axes; a crown is positive."""
+def shape_curvature(cover: Cover, positions: FloatArray) -> FloatArray:
+    """Curvature (m, 2, 2) [1/m] of a shape of the cover in warp/weft axes, positive on a crown."""
     at_vertices = vertex_curvature(positions, cover.faces)
     F = deformation_gradient(cover.rest, positions, cover.faces)
     mean = at_vertices[cover.faces].mean(axis=1)
