@@ -29,7 +29,7 @@ def folder(tmp_path):
     shutil.copy(data / "seat_cushion_demo_aama.dxf", tmp_path / "cover.dxf")
     shutil.copy(data / "seat_cushion_demo.seams.toml", tmp_path / "cover.seams.toml")
     write_obj(*box(), tmp_path / "foam.obj")
-    wire = np.array([[0.15, -0.2, 0.06], [0.15, 0.2, 0.06]])
+    wire = np.array([[0.15, -0.23, 0.08], [0.15, 0.23, 0.08]])
     names = ("wire left", "wire across", "frame front")
     write_curves(dict.fromkeys(names, wire), tmp_path / "curves.toml")
     return tmp_path
@@ -133,10 +133,11 @@ def test_example_files_of_the_page_read(folder, load):
     text = sample[:start] + head + sample[stop:last] + "[[seam]]" + seam
     (folder / "cover.seams.toml").write_text(text)
     wires = "".join(
-        f'\n[curve."{n}"]\npoints_mm = [[0, 0, 0], [1, 0, 0]]\n'
+        f'\n[curve."{n}"]\npoints_mm = [[-150, 0, 80], [150, 0, 80]]\n'
         for n in ("wire across", "frame front")
     )
     (folder / "curves.toml").write_text(blocks[2] + wires)
+    write_obj(*box(height=0.08), folder / "foam.obj")
     scene = load()
     assert scene.pattern.seams[-1].name == "front"
     assert scene.foam.curves["wire left"].tolist() == [[0.15, -0.23, 0.06], [0.15, 0.23, 0.06]]
@@ -331,3 +332,68 @@ def test_bad_values(refused, old, new, message):
 
 def test_limits_name_figures_of_the_zone_table():
     assert set(MEASURES) <= {f.name for f in dataclasses.fields(ZoneRow)}
+
+
+def rewire(folder, *points):
+    write_curves({"wire left": np.array(points, float),
+                  "wire across": np.array([[0.15, -0.2, 0.08], [0.15, 0.2, 0.08]]),
+                  "frame front": np.array([[0.15, -0.2, 0.06], [0.15, 0.2, 0.06]])},
+                 folder / "curves.toml")  # fmt: skip
+
+
+def test_hook_line_longer_than_its_wire(refused, folder):
+    rewire(folder, [0.15, -0.2, 0.08], [0.15, 0.2, 0.08])
+    got, line = refused(("seed = 0", "seed = 1"))
+    assert got == [
+        f"scene.toml:{line('line = ')}: hook[0].line: got 'left bolster', 460.2 mm long, "
+        "expected at most the length of its wire 'wire left', 400.0 mm"
+    ]
+
+
+def test_wire_inside_solid_foam(refused, folder):
+    rewire(folder, [0.15, -0.23, 0.06], [0.15, 0.23, 0.08])
+    got, line = refused(("seed = 0", "seed = 1"))
+    # The box is 100 mm high and 500 mm deep: 38 mm down at 20 mm or more from its front.
+    (message,) = got
+    where = f"scene.toml:{line('wire = ')}: hook[0].wire: got 'wire left', "
+    assert message.startswith(where)
+    depth = float(message.removeprefix(where).split(" mm inside solid foam")[0])
+    assert depth == pytest.approx(39.5, abs=0.6)
+    assert message.endswith("expected a wire in a trench, or at most 30 mm below the surface")
+
+
+def test_wire_that_leaves_the_foam_is_not_inside_it(load, folder):
+    rewire(folder, [0.15, -0.23, 0.18], [0.15, 0.23, 0.18])
+    assert set(load().foam.curves) == {"wire left", "wire across", "frame front"}
+
+
+@pytest.mark.parametrize(("unit", "size"), [("mm", "0.0005"), ("m", "500")])
+def test_foam_in_the_wrong_unit(refused, folder, unit, size):
+    """0.5 m written in metres and read as millimetres, and 500 mm read as metres."""
+    scale = 1e-3 if unit == "mm" else 1e3
+    corners, faces = box()
+    write_obj(scale * corners, faces, folder / "foam.obj")
+    got, _ = refused(('unit = "mm"', 'unit = "mm"'))
+    assert got[0].startswith(f"foam.obj: size: got {size} m, expected 0.05 to 3 m")
+    assert 'is it "m"?' in got[0]
+
+
+def test_panels_placed_on_each_other(refused):
+    front = '[placement.FRONT]\naxes = ["+x", "+z"]\ntranslation_mm = [-260.0, -260.0, -20.0]'
+    on_it = '[placement.FRONT]\naxes = ["+x", "+y"]\ntranslation_mm = [-260.0, -260.0, {}]'
+    got, line = refused((front, on_it.format(130.0)))
+    (message,) = got
+    assert message.startswith(f"scene.toml:{line('[placement.FRONT]')}: placement.FRONT: got ")
+    assert message.endswith(
+        " cm2 on CENTER, in the same plane, expected panels beside or above each other"
+    )
+    # 300 x 100 mm; the front edge bulges by 10 mm (2/3 of 300 x 10 mm2), the sides by 6 mm, of
+    # which 2.2 cm2 each lie in front.
+    assert float(message.split("got ")[1].split(" cm2")[0]) == pytest.approx(324.5, abs=0.5)
+
+
+def test_panels_placed_above_each_other(load):
+    front = 'axes = ["+x", "+z"]\ntranslation_mm = [-260.0, -260.0, -20.0]'
+    assert front in EXAMPLE
+    above = 'axes = ["+x", "+y"]\ntranslation_mm = [-260.0, -260.0, 140.0]'
+    assert load(EXAMPLE.replace(front, above)).placement["FRONT"].translation[2] == 0.14

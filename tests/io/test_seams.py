@@ -115,7 +115,7 @@ def test_edge_the_wrong_way_round_is_noticed(write, panels, problems):
         b = "b"
     """
     (message,) = problems(read_seams, write("s.toml", text), panels)
-    assert message.startswith("s.toml:10: seam[0]: got sides of 460.2 and 663.3 mm")
+    assert message.startswith("s.toml:10: seam[0]: got 's' with sides of 460.2 and 663.3 mm")
 
 
 def test_two_errors_are_reported_together(write, panels, problems):
@@ -141,3 +141,25 @@ def test_unknown_format(tmp_path, problems):
     assert problems(read_panels, tmp_path / "cover.svg") == [
         "cover.svg: file: got '.svg', expected one of .dxf"
     ]
+
+
+def test_sides_that_differ_by_more_than_ten_percent(write, panels, problems):
+    text = """
+        [edge.a]
+        panel = "CENTER"
+        from_mm = [300, 0]
+        to_mm = [300, 460]
+        [edge.b]
+        panel = "FRONT"
+        from_mm = [521.663, 130]
+        to_mm = [0, 130]
+        [[seam]]
+        name = "side to front"
+        a = "a"
+        b = "b"
+    """
+    (message,) = problems(read_seams, write("s.toml", text), panels)
+    assert message.startswith(
+        "s.toml:10: seam[0]: got 'side to front' with sides of 460.2 and 521.7 mm, "
+        "expected sides that differ by at most 10%"
+    )

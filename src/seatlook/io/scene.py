@@ -11,6 +11,7 @@ from typing import Any, cast
 import numpy as np
 
 from seatlook.errors import InputError
+from seatlook.io._scene_checks import check_overlap, check_wires
 from seatlook.io._scene_keys import AS_BUILT, KEYS
 from seatlook.io._scene_ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
 from seatlook.io._schema import known, read_table, shown
@@ -76,6 +77,8 @@ class _Reader:
             "rigs": make_rigs(document, row["rig"]),
             "cameras": make_cameras(document, row["camera"], _centre(foam)),
         }
+        check_wires(document, row, pattern, foam)
+        check_overlap(document, pattern, parts["placement"])
         document.finish()
         curvature = row["wrinkle"]["curvature"]
         return Scene(

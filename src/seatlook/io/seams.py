@@ -40,7 +40,7 @@ READERS: dict[str, Callable[..., tuple[Panel, ...]]] = {".dxf": read_dxf}
 SNAP_MM = 2.0
 LENGTH_TOLERANCE_MM = 0.5
 # Sides differ by some percent of ease; more means that an edge runs the wrong way round.
-LARGEST_RATIO = 1.25
+LARGEST_RATIO = 1.10
 
 _KEYS: dict[str, Kind] = {
     "schema": Integer(low=1, high=1, default=1),
@@ -211,8 +211,9 @@ def _check_lengths(
     if ratio > LARGEST_RATIO:
         document.report(
             ("seam", number),
-            f"sides of {lengths['length_mm']:.1f} and {lengths['length_b_mm']:.1f} mm",
-            f"sides that differ by less than a factor {LARGEST_RATIO:g}",
+            f"{values['name']!r} with sides of {lengths['length_mm']:.1f} and "
+            f"{lengths['length_b_mm']:.1f} mm",
+            f"sides that differ by at most {LARGEST_RATIO - 1:.0%}",
             "from_mm to to_mm runs counter-clockwise round the panel",
         )
 
