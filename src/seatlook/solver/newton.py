@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csc_array, diags_array
+from scipy.sparse import csc_array, eye_array
 from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 
 from seatlook.model import FloatArray
@@ -130,7 +130,7 @@ def newton(
     x = np.array(x, dtype=np.float64, order="C")
     energy, gradient = potential.value(x)
     state = Equilibrium(x, potential.residual(x, gradient), np.array([energy]), 0, -1, 0)
-    history, shift = [energy], 0.0
+    history = [energy]
     while state.iterations < max_iterations:
         hessian = potential.hessian(state.x, definite=False)
         factor, downhill = factorise(hessian)
@@ -142,9 +142,7 @@ def newton(
             state = replace(state, x=x, kicks=state.kicks + 1)
         else:
             if downhill:
-                factor, shift = _definite(potential, state.x, hessian, shift)
-            else:
-                shift *= 0.1
+                factor = _definite(potential, state.x, hessian, factor)
             step = potential.spread(-factor.solve(potential.gather(gradient)))
             found = line_search(potential, (state.x, energy, gradient), step, max_step)
             if found is None:
@@ -198,30 +196,41 @@ def factorise(hessian: csc_array) -> tuple[SuperLU, int]:
     return factor, int((pivots < -_ROUNDING * np.abs(pivots).max()).sum())
 
 
-def _definite(
-    potential: Potential, x: FloatArray, hessian: csc_array, shift: float
-) -> tuple[SuperLU, float]:
-    """Factor the Hessian lifted by just enough of its diagonal, at most the projected one."""
+def _definite(potential: Potential, x: FloatArray, hessian: csc_array, factor: SuperLU) -> SuperLU:
+    """Factor the Hessian lifted by little more than its lowest eigenvalue, or the projected one."""
+    lowest, _ = _softest(hessian, factor)
     projected = potential.hessian(x, definite=True)
-    scale = projected.diagonal()
-    shift = max(shift, 1e-6)
-    while shift < 0.1:
-        factor, downhill = factorise(csc_array(hessian + diags_array(shift * scale)))
+    scale = float(projected.diagonal().mean())
+    shift = max(2.0 * abs(lowest), 1e-12 * scale)
+    while shift < 0.01 * scale:
+        lifted, downhill = factorise(_lifted(hessian, shift))
         if downhill == 0:
-            return factor, shift
-        shift *= 10.0
-    lifted = csc_array(projected + diags_array(1e-9 * scale.mean() + 1e-6 * scale))
-    return factorise(lifted)[0], 1e-3
+            return lifted
+        shift *= 8.0
+    return factorise(_lifted(projected, 1e-6 * scale))[0]
+
+
+def _lifted(matrix: csc_array, shift: float) -> csc_array:
+    return csc_array(matrix + shift * eye_array(matrix.shape[0]))
+
+
+def _softest(hessian: csc_array, factor: SuperLU) -> tuple[float, FloatArray]:
+    """Return the lowest of the eigenvalues around zero, and its mode."""
+    inverse = LinearOperator(hessian.shape, matvec=factor.solve, dtype=np.float64)
+    start = np.random.default_rng(0).standard_normal(hessian.shape[0])
+    count = min(6, hessian.shape[0] - 1)
+    values, modes = eigsh(
+        hessian, k=count, sigma=0.0, which="LM", OPinv=inverse, v0=start, tol=1e-3
+    )
+    low = int(np.argmin(values))
+    return float(values[low]), np.asarray(modes[:, low])
 
 
 def _push(
     potential: Potential, x: FloatArray, hessian: csc_array, factor: SuperLU, kick: float
 ) -> FloatArray:
     """Move along the softest mode, to the side where the potential is lower."""
-    inverse = LinearOperator(hessian.shape, matvec=factor.solve, dtype=np.float64)
-    start = np.linspace(1.0, 2.0, hessian.shape[0])
-    _, vectors = eigsh(hessian, k=1, sigma=0.0, which="LM", OPinv=inverse, v0=start, tol=1e-4)
-    mode = potential.spread(vectors[:, 0])
+    mode = potential.spread(_softest(hessian, factor)[1])
     mode *= kick / np.linalg.norm(mode, axis=1).max()
     sides = [x + mode, x - mode]
     return min(sides, key=lambda side: potential.value(side)[0])
