@@ -164,8 +164,17 @@ def test_check_tells_what_would_be_solved(demo_scene, capsys):
     assert found["element_size_mm"] == pytest.approx(20, rel=0.15)
     ratio = found["wavelength_mm"] / found["element_size_mm"]
     assert found["wavelength_over_element_size"] == pytest.approx(ratio)
+    ease = {row["seam"]: row for row in found["ease"]}
+    # The rear panel is cut 1 % narrower across its grain; the insert's rear edge is not.
+    assert ease["INSERT-REAR"]["ease_percent"] == pytest.approx(1.0, abs=0.15)
+    assert ease["INSERT-REAR"]["ease_mm"] == pytest.approx(2.5, abs=0.4)
+    assert abs(ease["INSERT-BOLSTER_L"]["ease_percent"]) < 0.01
+    assert ease["INSERT-BOLSTER_L"]["notches_a"] == 3
+    assert all(row["matched"] for row in found["ease"])
     assert run(["check", str(demo_scene), "--element-size-mm", "40"]) == 0
-    assert "element_size_mm" in capsys.readouterr().out
+    text = capsys.readouterr().out
+    assert "element_size_mm" in text
+    assert "ease_percent" in text
 
 
 def test_flatten_writes_a_pattern_and_its_strains(demo_scene, tmp_path, capsys):

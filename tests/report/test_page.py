@@ -127,3 +127,12 @@ def test_a_missed_limit_is_said_in_words_not_in_colour_alone(tmp_path):
     missed = Check(name="gap", value="2 mm", limit="0.1 mm", kept=False)
     text = write_page(page_data(tmp_path, checks=(missed,)), tmp_path).read_text(encoding="utf-8")
     assert '<td class="missed">NO</td>' in text
+
+
+def test_seams_have_a_table_of_their_own(tmp_path):
+    seams = Table(heads=("seam", "ease [%]"), rows=(("left", 1.25),))
+    text = write_page(page_data(tmp_path, seams=seams), tmp_path).read_text(encoding="utf-8")
+    assert 'id="seams-head"' in text
+    assert "1.25" in text
+    bare = write_page(page_data(tmp_path), tmp_path).read_text(encoding="utf-8")
+    assert "seams-head" not in bare

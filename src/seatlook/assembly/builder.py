@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatlook import mesh
+from seatlook.assembly.ease import seam_ease
 from seatlook.assembly.lines import Line, anchor_on, curve_of, join, line_through, stitches
 from seatlook.model import (
     Anchor,
@@ -109,12 +110,13 @@ class Builder:
         return [Line(ln.vertices[::-1], ln.length - ln.arc[::-1]) for ln in lines]
 
     def stitching(self, seam: Seam, stage: Stage) -> Stitching:
-        """Pair points of both sides at equal shares of the seam's length.
+        """Pair points of both sides at equal shares of the length between matching notches.
 
         There is at most one pair per segment of the coarser side: more would make the finer
         side follow its chords and lock the seam against bending.
         """
         near, far = self.chain([seam.a]), self.chain(seam.b, reverse=seam.reverse)
+        knots_a, knots_b = seam_ease(self.pattern, seam).knots
         a, b = [], []
         weight = []
         total_a, total_b = near[0].length, sum(ln.length for ln in far)
@@ -124,7 +126,8 @@ class Builder:
             span = share * total_a
             pitch = max(seam.pitch, side.spacing, near[0].spacing * span / max(span, 1e-12))
             at, length = stitches(share, total_a, pitch)
-            a.append(near[0].points(total_a * np.clip(done + at, 0.0, 1.0)))
+            met = np.interp(done + at, knots_b, knots_a)
+            a.append(near[0].points(total_a * met))
             b.append(side.points(at / share * side.length))
             weight.append(length)
             done += share

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import astuple, fields, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -15,6 +15,7 @@ from seatlook.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from seatlook.assembly.ease import SeamEase
     from seatlook.evaluation import Evaluation
     from seatlook.model import Scene, Solution
     from seatlook.wrinkle import ZoneRow
@@ -48,11 +49,13 @@ def check(
     Example: seatlook check seat.toml
     """
     from seatlook.assembly import assemble
+    from seatlook.assembly.ease import seam_ease
     from seatlook.solver.contact import foam_wavelength
 
     read = load(scene, seed, element_size_mm)
     cover = assemble(read)
     wave = min(foam_wavelength(m.fabric, read.foam.material) for m in cover.materials)
+    seams = [_seam_row(seam_ease(read.pattern, seam)) for seam in read.pattern.seams]
     table(
         ("what", "value"),
         [
@@ -65,9 +68,27 @@ def check(
             ("element_size_mm", 1e3 * cover.element_size),
             ("wavelength_mm", 1e3 * wave),
             ("wavelength_over_element_size", wave / cover.element_size),
+            *([("ease", seams)] if json else ()),
         ],
         json=json,
     )
+    if seams and not json:
+        table(tuple(seams[0]), [tuple(row.values()) for row in seams], json=False)
+
+
+def _seam_row(ease: SeamEase) -> dict[str, Any]:
+    """Figures of one seam; "matched" is whether both sides have as many notches."""
+    return {
+        "seam": ease.name,
+        "length_a_mm": 1e3 * ease.length_a,
+        "length_b_mm": 1e3 * ease.length_b,
+        "ease_mm": 1e3 * ease.ease,
+        "ease_percent": 100 * ease.share,
+        "most_between_notches_percent": 100 * ease.extreme,
+        "notches_a": len(ease.notches_a),
+        "notches_b": len(ease.notches_b),
+        "matched": ease.matched,
+    }
 
 
 def evaluate(

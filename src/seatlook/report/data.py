@@ -93,6 +93,7 @@ class PageData:
     pictures : (texture, rig name) -> path relative to the page; one for every cell
     maps : W1, W2, W_stretch, W_compression, ...
     zones : one row per zone
+    seams : one row per seam: its two lengths and the ease between them
     parameters : what they belong to -> table of keys, values and sources
     provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
     checks : solver conditions and accept limits
@@ -114,6 +115,7 @@ class PageData:
     parameters: MappingProxyType[str, Table]
     provenance: MappingProxyType[str, str]
     status: str
+    seams: Table | None = None
     checks: tuple[Check, ...] = ()
     warnings: tuple[str, ...] = ()
     history: MappingProxyType[str, tuple[float, ...]] = field(

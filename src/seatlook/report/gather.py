@@ -9,8 +9,9 @@ from pathlib import Path
 from types import MappingProxyType
 
 from seatlook import __version__
+from seatlook.assembly.ease import SeamEase, seam_ease
 from seatlook.evaluation import MAPS, RESULT, Evaluation, label
-from seatlook.model import Light, Rig, Solution
+from seatlook.model import Light, Rig, Scene, Solution
 from seatlook.pbr import ev100, lux_at_seat, offscreen_backend
 from seatlook.report.chart import number
 from seatlook.report.data import Check, MapView, PageData, RigHead, Table
@@ -74,6 +75,7 @@ def page_data(evaluation: Evaluation) -> PageData:
         parameters=parameter_tables(scene),
         provenance=MappingProxyType(dict(_provenance(evaluation, waves))),
         status=solution.status,
+        seams=seam_table(scene),
         checks=(*_conditions(solution), *_limits(evaluation)),
         warnings=tuple(_warnings(evaluation, waves)),
         history=MappingProxyType(
@@ -149,6 +151,40 @@ def _zones(evaluation: Evaluation) -> Table:
             if row.zone != "free edge"
         ),
     )
+
+
+def seam_table(scene: Scene) -> Table:
+    """Seams, the one with the largest ease first."""
+    eases = [seam_ease(scene.pattern, seam) for seam in scene.pattern.seams]
+    return Table(
+        heads=(
+            "seam",
+            "near side [mm]",
+            "far side [mm]",
+            "ease [mm]",
+            "ease [%]",
+            "most between notches [%]",
+            "notches",
+        ),
+        rows=tuple(
+            (
+                ease.name,
+                1e3 * ease.length_a,
+                1e3 * ease.length_b,
+                1e3 * ease.ease,
+                100 * ease.share,
+                100 * ease.extreme,
+                _matching(ease),
+            )
+            for ease in sorted(eases, key=lambda ease: -abs(ease.share))
+        ),
+    )
+
+
+def _matching(ease: SeamEase) -> str:
+    """Say how many notches meet, or that they do not."""
+    near, far = len(ease.notches_a), len(ease.notches_b)
+    return f"{near} matched" if ease.matched else f"{near} and {far}: not matched"
 
 
 def _conditions(solution: Solution) -> Iterator[Check]:
