@@ -59,7 +59,7 @@ def test_constant_value_takes_its_colour(solution):
 def test_range_around_zero_picks_the_diverging_map(solution):
     values = left_to_right(solution)
     picture = render_map(solution, values, camera=CAMERA, title="W1", value_range=(-0.1, 0.1))
-    left, right = picture.pixels[60, 62], picture.pixels[60, 98]
+    left, right = picture.pixels[60, 66], picture.pixels[60, 93]
     assert left[2] > left[0]
     assert right[0] > right[2]
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -21,6 +20,7 @@ from seatlook.pbr.kernels import bvh, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.kernels.stitch import Thread
 from seatlook.pbr.picture import Image
+from seatlook.pbr.quality import Quality, quality_named
 from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, white_of
 from seatlook.pbr.surface import Surface, drawn_surface, neighbour_mean
 from seatlook.pbr.tables import load_tables
@@ -36,31 +36,6 @@ _CARD = 0.18
 _COMPRESSED = 0.02
 # How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
 _OCCLUDER = 0.04
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Quality:
-    """How much is spent on a picture.
-
-    Parameters
-    ----------
-    factor : samples per pixel and axis
-    rays : shadow rays per sample where a shadow has its edge
-    strata : the half-space is seen along strata^2 rays per vertex; 0 leaves it all open
-    bounces : how often light may go from cover to cover
-    """
-
-    factor: int
-    rays: int
-    strata: int
-    bounces: int
-
-
-QUALITIES: dict[str, Quality] = {
-    "draft": Quality(factor=1, rays=1, strata=0, bounces=0),
-    "standard": Quality(factor=2, rays=4, strata=8, bounces=1),
-    "high": Quality(factor=4, rays=4, strata=16, bounces=3),
-}
 
 
 class Studio:
@@ -83,7 +58,7 @@ class Studio:
         self, appearance: Looks = None, *, rig: Rig, camera: Camera, quality: str = "standard"
     ) -> Image:
         """Draw the cover; see :func:`render`."""
-        level = _quality(quality)
+        level = quality_named(quality)
         look = self._look(appearance)
         ids = self.faces(camera, level.factor)
         seen = self._visibility(rig, camera, level, ids)
@@ -318,21 +293,10 @@ def eye_of(camera: Camera, factor: int) -> surface.Eye:
     return surface.Eye(np.array(camera.position), first, step * right, step * down)
 
 
-def _quality(name: str) -> Quality:
-    if name not in QUALITIES:
-        raise InputError.single(
-            "quality",
-            got=repr(name),
-            expected=f"one of {', '.join(QUALITIES)}",
-            hint=did_you_mean(name, QUALITIES),
-        )
-    return QUALITIES[name]
-
-
 def _check(radiance: FloatArray, ids: np.ndarray, seen: np.ndarray, camera: Camera) -> None:
     if not np.isfinite(radiance).all():
         raise RenderError(f"camera {camera.name}: the picture holds values that are not finite")
-    if seen.size and (seen[:, ids >= 0] > 0).any() and radiance.max() <= 0:
+    if radiance.max() <= 0 and (seen[:, ids >= 0] > 0).any():
         raise RenderError(f"camera {camera.name}: the picture is black though a light reaches it")
 
 
