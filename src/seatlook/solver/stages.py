@@ -9,6 +9,8 @@ from itertools import pairwise
 from seatlook.errors import InputError, did_you_mean
 from seatlook.model import Anchor, Cover, Stage, Stitching
 
+_BEGUN = 1e-9  # of a stage
+
 
 @dataclass(frozen=True, slots=True)
 class Step:
@@ -71,6 +73,6 @@ def check_stages(cover: Cover) -> None:
 
 def _progress(stages: Sequence[Stage], time: float) -> dict[str, float]:
     """Time since each stage began over its length."""
-    return {
-        stage.name: max((time - stage.start) / (stage.end - stage.start), 0.0) for stage in stages
-    }
+    passed = {s.name: (time - s.start) / (s.end - s.start) for s in stages}
+    # Rounding of the time must not let a stage begin with the last step of the one before.
+    return {name: share if share > _BEGUN else 0.0 for name, share in passed.items()}
