@@ -46,6 +46,10 @@ def test_every_command_explains_itself_with_an_example(command, capsys):
         (["evaluate", "a.toml", "--out", "o", "--seed", "x"], "seed"),
         (["materials", "show", "sued"], "did you mean 'suede'?"),
         (["solve", "a.toml", "--out", "a.txt"], "--out: got a.txt, expected a name that ends in"),
+        (
+            ["solve", "a.toml", "--out", "a.npz", "--from", "hook", "--resume"],
+            "--from: got --resume as well, expected one of them",
+        ),
         (["demo", "--ease", "2%"], "--ease: got '2%', expected NAME=2%"),
         (["demo", "--starve", "INSERT=much"], "--starve: got 'INSERT=much', expected NAME=2%"),
         (["demo", "--material", "sued"], "did you mean 'suede'?"),
@@ -175,6 +179,27 @@ def test_check_tells_what_would_be_solved(demo_scene, capsys):
     text = capsys.readouterr().out
     assert "element_size_mm" in text
     assert "ease_percent" in text
+
+
+def test_stages_are_kept_and_gone_on_from(demo_scene, tmp_path, capsys):
+    from seatlook import io
+
+    words = ["solve", str(demo_scene), "--element-size-mm", "40", "--out"]
+    code = run([*words, str(tmp_path / "a.npz"), "--stages"])
+    folder = tmp_path / "a.stages"
+    kept = sorted(p.name for p in folder.iterdir())
+    # Hooks are pulled while the cover is: one snapshot for both.
+    assert kept == ["1-sew.npz", "3-cover.npz", "4-settle.npz"]
+    assert "stage: sew\nstage: cover\nstage: settle\n" in capsys.readouterr().err
+    whole = io.read_result(tmp_path / "a.npz")
+    for option in (["--from", "cover"], ["--resume"]):
+        assert run([*words, str(tmp_path / "a.npz"), *option]) == code
+        assert "stage: sew" not in capsys.readouterr().err
+        again = io.read_result(tmp_path / "a.npz")
+        assert again.positions.tobytes() == whole.positions.tobytes()
+        assert again.figures["steps"] == whole.figures["steps"]
+    assert run([*words, str(tmp_path / "a.npz"), "--from", "covr"]) == 2
+    assert "(did you mean 'cover'?)" in capsys.readouterr().err
 
 
 def test_flatten_writes_a_pattern_and_its_strains(demo_scene, tmp_path, capsys):

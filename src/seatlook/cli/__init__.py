@@ -1,6 +1,6 @@
 """The command line: ``seatlook demo | check | evaluate | ...``."""
 
-from seatlook.cli import _demo, _machine, _run
+from seatlook.cli import _demo, _machine, _run, _solve
 from seatlook.cli._app import app, main, run
 
 __all__ = ["app", "main", "run"]
@@ -9,7 +9,7 @@ app.command(_demo.demo)
 app.command(_demo.flatten)
 app.command(_run.check)
 app.command(_run.evaluate)
-app.command(_run.solve)
+app.command(_solve.solve)
 app.command(_run.wrinkle)
 app.command(_run.render)
 app.command(_machine.materials)

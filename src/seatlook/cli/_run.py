@@ -124,41 +124,6 @@ def evaluate_scene(scene: Scene, out: Path, *, resume: bool, json: bool) -> int:
     return _exit_code(evaluation)
 
 
-def solve(
-    scene: SceneFile,
-    /,
-    *,
-    out: Annotated[Path, Parameter(help="Result file to write (.npz).")],
-    seed: Seed = None,
-    element_size_mm: ElementSize = None,
-    json: Json = False,
-) -> int:
-    """Sew, hook and cover a scene, and keep the result; nothing is drawn.
-
-    A result that is not converged is written as well, says so, and ends with 3.
-
-    Example: seatlook solve seat.toml --out seat.npz
-    """
-    from seatlook import io
-    from seatlook.assembly import assemble
-    from seatlook.solver import solve as run_solver
-
-    if out.suffix != ".npz":
-        raise InputError.single("--out", got=out.name, expected="a name that ends in .npz")
-    cover = assemble(load(scene, seed, element_size_mm))
-    with progress() as show:
-        solution = run_solver(
-            cover, strict=False, progress=lambda **figures: show("solve", **figures)
-        )
-    io.write_result(solution, out)
-    table(
-        ("what", "value"),
-        [("status", solution.status), ("reason", solution.reason), *solution.figures.items()],
-        json=json,
-    )
-    return _solved(solution)
-
-
 def wrinkle(
     scene: SceneFile,
     result: ResultFile,
@@ -274,7 +239,7 @@ def _print_zones(zones: tuple[ZoneRow, ...], *, json: bool) -> None:
     table([f.name for f in fields(zones[0])], [astuple(row) for row in zones], json=json)
 
 
-def _solved(solution: Solution) -> int:
+def exit_code_of(solution: Solution) -> int:
     if solution.status == "converged":
         return 0
     say(f"not converged: {solution.reason}")
@@ -290,4 +255,4 @@ def _exit_code(evaluation: Evaluation) -> int:
                 f"{limit.zone}: {limit.measure} is {verdict.value:.4g}, "
                 f"the limit is {limit.maximum:.4g}"
             )
-    return _solved(evaluation.solution) or int(not evaluation.accepted)
+    return exit_code_of(evaluation.solution) or int(not evaluation.accepted)

@@ -1,0 +1,192 @@
+"""The making of a cover stage by stage: each kept on disk, and gone on from."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from seatlook import __version__, io
+from seatlook.errors import InputError, did_you_mean
+from seatlook.model import Anchor, Cover, Solution, Stage, Stitching
+from seatlook.solver import solve
+from seatlook.solver.solve import Progress
+
+# What adds up over the calls of the solver.
+_ADDED = ("steps", "iterations", "cpu_seconds")
+
+
+def solve_in_stages(
+    cover: Cover,
+    folder: Path,
+    *,
+    again_from: str | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+) -> Solution:
+    """Solve a cover and keep its state at the end of every stage.
+
+    Snapshots are written whole or not at all, so a run that is killed leaves those of the stages
+    it has finished; going on from one gives the same bits as not stopping.
+
+    Parameters
+    ----------
+    folder : for ``1-sew.npz``, ``2-hook.npz``, ...
+    again_from : stage to do again, with all after it, from the snapshot before it
+        What was sewn or tied earlier must not have changed; what comes later, and the foam, may.
+    resume : go on from the last snapshot of this very cover, if there is one
+    progress : as in ``solve``
+
+    Returns
+    -------
+    Solution
+        At rest. History, steps, iterations and CPU time are those of all stages, including the
+        ones that were taken from snapshots.
+
+    Raises
+    ------
+    InputError
+        ``again_from`` is no stage, its snapshot is missing or is not of this cover's mesh, fabrics
+        and earlier stages; and what ``solve`` raises.
+    """
+    start = None
+    if again_from is not None:
+        start = _before(again_from, cover, folder)
+    elif resume:
+        start = _last_of(cover, folder)
+    order = stage_order(cover)
+
+    def keep(state: Solution) -> None:
+        io.write_result(joined(start, state), folder / snapshot_name(order, state.stage))
+
+    return joined(start, solve(cover, progress=progress, start=start, snapshot=keep))
+
+
+def stage_order(cover: Cover) -> list[str]:
+    """Names of the stages in the order in which they begin."""
+    return [stage.name for stage in _begun(cover)]
+
+
+def snapshot_name(order: list[str], stage: str) -> str:
+    """Name of a stage's file.
+
+    Examples
+    --------
+    >>> snapshot_name(["sew", "pull down"], "pull down")
+    '2-pull-down.npz'
+    """
+    slug = "".join(c if c.isalnum() else "-" for c in stage.lower())
+    return f"{order.index(stage) + 1}-{slug}.npz"
+
+
+def joined(start: Solution | None, after: Solution) -> Solution:
+    """Put the history of the stages before in front of a solution that went on from ``start``."""
+    if start is None:
+        return after
+    history = {
+        name: np.concatenate([start.history[name], column])
+        for name, column in after.history.items()
+    }
+    spent = start.figures["cpu_seconds"]
+    history["cpu_seconds"] = np.concatenate(
+        [start.history["cpu_seconds"], spent + after.history["cpu_seconds"]]
+    )
+    figures = dict(after.figures)
+    for name in _ADDED:
+        figures[name] += start.figures[name]
+    return dataclasses.replace(
+        after, history=MappingProxyType(history), figures=MappingProxyType(figures)
+    )
+
+
+def _begun(cover: Cover) -> list[Stage]:
+    return sorted(cover.stages, key=lambda stage: stage.start)
+
+
+def _snapshots(cover: Cover, folder: Path) -> Iterator[Solution]:
+    """Stored states, the last stage first; absent ones are left out."""
+    order = stage_order(cover)
+    for stage in reversed(order):
+        path = folder / snapshot_name(order, stage)
+        if path.exists():
+            yield io.read_result(path)
+
+
+def _last_of(cover: Cover, folder: Path) -> Solution | None:
+    """Return the last state that is of this very cover and this version."""
+    for state in _snapshots(cover, folder):
+        if state.version == __version__ and _same(state.cover, cover):
+            return state
+    return None
+
+
+def _before(stage: str, cover: Cover, folder: Path) -> Solution | None:
+    """Return the state at the end of the stage before ``stage``; None before the first."""
+    order = stage_order(cover)
+    if stage not in order:
+        raise InputError.single(
+            "stage", got=repr(stage), expected=f"one of {order}", hint=did_you_mean(stage, order)
+        )
+    at = cover.stages[[s.name for s in cover.stages].index(stage)].start
+    before = [s.name for s in _begun(cover) if s.start < at]
+    if not before:
+        return None
+    # Of stages that begin together only the last has steps of its own and so a snapshot.
+    paths = {name: folder / snapshot_name(order, name) for name in before}
+    kept = [name for name in before if paths[name].exists()]
+    if not kept:
+        raise InputError.single(
+            "snapshot", got="no such file", expected=f"the end of stage {before[-1]!r}",
+            file=paths[before[-1]], hint="it is written by solving in stages",
+        )  # fmt: skip
+    state: Solution = io.read_result(paths[kept[-1]])
+    changed = list(_changes(state.cover, cover, before[: before.index(kept[-1]) + 1]))
+    if changed:
+        raise InputError.single(
+            "snapshot", got=f"another {', '.join(changed)}",
+            expected=f"one of the same cover up to the end of {kept[-1]!r}",
+            file=paths[kept[-1]], hint="do an earlier stage again",
+        )  # fmt: skip
+    return state
+
+
+def _changes(old: Cover, new: Cover, stages: list[str]) -> Iterator[str]:
+    """Name what counted in these stages and is no longer the same."""
+    for name in ("rest", "faces", "positions", "materials"):
+        if not _same(getattr(old, name), getattr(new, name)):
+            yield name
+    following = len(stages) + 1
+    for a, b in zip(_begun(old)[:following], _begun(new)[:following], strict=True):
+        if a.name != b.name or a.start != b.start or (b.name in stages and a.end != b.end):
+            yield f"stage {b.name}"
+    if not _same(_ties(old, stages), _ties(new, stages)):
+        yield "seam, hook or frame of these stages"
+    shapes = {t.name: len(t.length) for t in _ties(old, stage_order(old))}
+    for tie in _ties(new, stage_order(new)):
+        if tie.stage not in stages and shapes.get(tie.name, len(tie.length)) != len(tie.length):
+            yield f"number of points of {tie.name}"
+
+
+def _ties(cover: Cover, stages: list[str]) -> tuple[Stitching | Anchor, ...]:
+    every: tuple[Stitching | Anchor, ...] = (*cover.stitchings, *cover.anchors)
+    return tuple(tie for tie in every if tie.stage in stages)
+
+
+def _same(a: Any, b: Any) -> bool:
+    """Whether two values are equal, arrays in them to the last bit."""
+    if type(a) is not type(b):
+        return False
+    if isinstance(a, np.ndarray):
+        return bool(np.array_equal(a, b))
+    if dataclasses.is_dataclass(a):
+        fields = [f.name for f in dataclasses.fields(a)]
+        return all(_same(getattr(a, n), getattr(b, n)) for n in fields)
+    if isinstance(a, tuple | list):
+        return len(a) == len(b) and all(_same(x, y) for x, y in zip(a, b, strict=True))
+    if isinstance(a, MappingProxyType | dict):
+        return a.keys() == b.keys() and all(_same(a[k], b[k]) for k in a)
+    return bool(a == b)
