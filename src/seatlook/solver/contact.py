@@ -40,8 +40,20 @@ def wave_stiffness(fabric: Fabric, foam: FoamMaterial) -> float:
     return math.pi * plane_strain_modulus(foam) / foam_wavelength(fabric, foam)
 
 
+def settled_rows(count: int) -> int:
+    """Rows of three that hold one settlement for each of ``count`` vertices."""
+    return -(-count // 3)
+
+
+def settled_part(state: FloatArray, count: int) -> FloatArray:
+    """View (count,) of the settlements that follow the positions in a state or gradient."""
+    return state[count:].reshape(-1)[:count]
+
+
 class FoamContact:
     """Energy of the foam pressed in by the sheet's lower face.
+
+    The state holds n positions and, if it goes on, the settlements of the foam below them.
 
     Parameters
     ----------
@@ -58,28 +70,38 @@ class FoamContact:
         stiffness: FloatArray,
         area: FloatArray,
     ) -> None:
-        self.field, self.area = field, area
-        self.offset = half_thickness.copy()
+        self.field, self.area, self.half_thickness = field, area, half_thickness
         self.per_vertex = stiffness * area
+        # What the sheet sees once the foam below may settle, for the prefactored matrix.
+        self.seen = self.per_vertex
         n = len(area)
         self.force, self.depth, self.normal = np.zeros(n), np.zeros(n), np.zeros((n, 3))
-        self._blocks = np.zeros((n, 3, 3))
+        self._blocks, self._firm = np.zeros((n, 3, 3)), np.zeros((2, n))
 
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N]."""
+        pull = settled_part(gradient, len(self.area)) if len(x) > len(self.area) else self._firm[1]
         return float(
             kernel.contact_value(
-                x, self.field.coefficients, self.field.grid, self.offset, self.per_vertex, gradient
+                x,
+                self.field.coefficients,
+                self.field.grid,
+                self.half_thickness,
+                self._settled(x),
+                self.per_vertex,
+                gradient,
+                pull,
             )
         )
 
     def update(self, x: FloatArray) -> None:
-        """Refresh normal force, normal and depth at ``x``."""
+        """Refresh normal force, normal and depth of the springs at ``x``."""
         kernel.contact_state(
             x,
             self.field.coefficients,
             self.field.grid,
-            self.offset,
+            self.half_thickness,
+            self._settled(x),
             self.per_vertex,
             self.force,
             self.normal,
@@ -87,40 +109,46 @@ class FoamContact:
         )
 
     def pressure(self) -> FloatArray:
-        """Pressure at the last update, (n,) [Pa]."""
+        """Pressure at the last update, per rest area, (n,) [Pa]."""
         return np.asarray(self.force / self.area)
 
-    def compression(self, x: FloatArray) -> float:
-        """Largest depth over the local thickness of the foam, at the last update [1]."""
-        touching = np.flatnonzero(self.force > 0)
-        if not touching.size:
-            return 0.0
-        through = np.empty(len(touching))
-        kernel.thickness(
-            self.field.coefficients,
-            self.field.grid,
-            x[touching],
-            self.normal[touching],
-            through,
-        )
-        return float((self.depth[touching] / (through + self.depth[touching])).max())
+    def foam_thickness(self, x: FloatArray) -> FloatArray:
+        """Thickness of the foam below each vertex, (n,) [m]; never more than its least extent.
+
+        Load on a tall side spreads over the side's height rather than go through the whole cushion.
+        """
+        phi, normal = self.field.at(x)
+        near = np.isfinite(phi)
+        unit = normal[near] / np.linalg.norm(normal[near], axis=1, keepdims=True)
+        through = np.empty(len(unit))
+        surface = x[near] - phi[near, None] * unit
+        kernel.thickness(self.field.coefficients, self.field.grid, surface, unit, through)
+        found = np.clip(through, self.field.grid[3], self.field.least_extent)
+        result = np.full(len(x), float(np.median(found)) if len(found) else self.field.least_extent)
+        result[near] = found
+        return result
 
     def stiffness(self) -> csc_array:
-        """Foam stiffness of the vertices that touched at the last update."""
-        return diags_array(np.where(self.force > 0, self.per_vertex, 0.0)).tocsc()
+        """Foam stiffness that vertices see which touched at the last update."""
+        return diags_array(np.where(self.force > 0.0, self.seen, 0.0)).tocsc()
 
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
-        """Second derivative [N/m]; ``definite`` leaves the curvature of the surface out."""
+        """Second derivative in the positions [N/m]; ``definite`` leaves phi's curvature out."""
         kernel.contact_blocks(
             x,
             self.field.coefficients,
             self.field.grid,
-            self.offset,
+            self.half_thickness,
+            self._settled(x),
             self.per_vertex,
             definite,
             self._blocks,
         )
         return diagonal_blocks(self._blocks)
+
+    def _settled(self, x: FloatArray) -> FloatArray:
+        n = len(self.area)
+        return settled_part(x, n) if len(x) > n else self._firm[0]
 
 
 def diagonal_blocks(blocks: FloatArray) -> csc_array:

@@ -24,10 +24,12 @@ class DistanceField:
     ----------
     coefficients : (nx, ny, nz) float64 [m]
     grid : (4,) float64 [m]     first node and spacing
+    least_extent : float [m]    smallest side of the surface's bounding box
     """
 
     coefficients: FloatArray
     grid: FloatArray
+    least_extent: float
 
     def at(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return distance (k,) [m] and gradient (k, 3); outside the grid inf and 0."""
@@ -83,7 +85,8 @@ def distance_field(
     for _ in range(_PASSES):
         kernel.improve(vertices, faces, grid, distance2, nearest, band)
     phi = np.sqrt(distance2) * np.where(_inside(vertices, faces, grid, shape), -1.0, 1.0)
-    return DistanceField(ndimage.spline_filter(phi, order=3, mode="mirror"), grid)
+    coefficients = ndimage.spline_filter(phi, order=3, mode="mirror")
+    return DistanceField(coefficients, grid, float((high - low).min()))
 
 
 def _inside(

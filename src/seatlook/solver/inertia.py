@@ -25,10 +25,11 @@ class Inertia:
 
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N]."""
-        d = np.subtract(x, self.free, out=self._difference)
+        n = len(self.mass)
+        d = np.subtract(x[:n], self.free, out=self._difference)
         energy = 0.5 * float(np.einsum("i,ij,ij->", self.rate, d, d))
         d *= self.rate[:, None]
-        gradient += d
+        gradient[:n] += d
         return energy
 
     def stiffness(self) -> csc_array:
@@ -49,8 +50,9 @@ class Gravity:
 
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N]."""
-        gradient[:, 2] += self.weight
-        return float(self.weight @ x[:, 2])
+        n = len(self.weight)
+        gradient[:n, 2] += self.weight
+        return float(np.einsum("i,i->", self.weight, x[:n, 2]))
 
     def stiffness(self) -> None:
         """A constant force has none."""

@@ -9,13 +9,12 @@ from scipy.sparse import csc_array, diags_array
 
 from seatlook.errors import InputError, SolverError
 from seatlook.mesh import vertex_normals
-from seatlook.model import Cover, FloatArray, Foam, Solution
-from seatlook.solver.contact import FoamContact, wave_stiffness
-from seatlook.solver.distance import distance_field
+from seatlook.model import Cover, FloatArray, Solution
+from seatlook.solver.contact import settled_rows
 from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.energy import Energy
 from seatlook.solver.factor import Factor, Preconditioner, SplitFactor
-from seatlook.solver.friction import Friction
+from seatlook.solver.foundation import Foundation
 from seatlook.solver.inertia import Gravity, Inertia
 from seatlook.solver.kernels.lbfgs import largest_row
 from seatlook.solver.lbfgs import Lbfgs, Potential
@@ -49,6 +48,22 @@ class Record(NamedTuple):
     iterations: int
 
 
+class _OfPositions:
+    """An energy that knows positions only, in a state that goes on after them."""
+
+    def __init__(self, energy: Energy, count: int) -> None:
+        self._energy, self._count = energy, count
+
+    def value(self, x: FloatArray, gradient: FloatArray) -> float:
+        return self._energy.value(x[: self._count], gradient[: self._count])
+
+    def stiffness(self) -> csc_array | None:
+        return self._energy.stiffness()
+
+    def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
+        return self._energy.hessian(x[: self._count], definite=definite)
+
+
 class Process:
     """State and energies of a cover in the making.
 
@@ -76,35 +91,25 @@ class Process:
         self.gravity = Gravity(self._mass)
         self.inertia = Inertia(self._mass, dt)
         self.ties = Ties(cover, tension[self.panel] / cover.element_size)
-        outer: list[Energy] = [self.gravity, self.ties]
-        self.contact: FoamContact | None = None
-        self.friction: Friction | None = None
+        self.foundation: Foundation | None = None
+        n = len(cover.rest)
         if cover.foam is not None:
-            self.contact = self._foam_contact(cover.foam)
-            self.friction = Friction(self.contact, cover.foam.material.friction)
-            outer += [self.contact, self.friction]
-        self._outer = Potential(outer)
-        self._elastic = Potential(self.sheet.energies)
-        self._static = Potential([*self.sheet.energies, *outer])
-        self._moving = Potential([*self.sheet.energies, *outer, self.inertia])
-        self.x = np.array(cover.positions, order="C")
+            self.foundation = Foundation(cover, cover.foam, self.panel, self.ties)
+        below = () if self.foundation is None else self.foundation.energies
+        self._outer = Potential([self.gravity, self.ties, *below])
+        sheet = [_OfPositions(energy, n) for energy in self.sheet.energies]
+        self._elastic = Potential(sheet)
+        self._static = Potential([*sheet, *self._outer.energies])
+        self._moving = Potential([*self._static.energies, self.inertia])
+        self.state = np.zeros((n + (0 if self.foundation is None else settled_rows(n)), 3))
+        self.x = self.state[:n]
+        np.copyto(self.x, cover.positions)
         self.v = np.zeros_like(self.x)
         self.time = 0.0
-        self._lbfgs = Lbfgs(self.x.shape)
-        self._factor: Factor | None = None
+        self._lbfgs = Lbfgs(self.state.shape)
+        self._factor: Preconditioner | None = None
         self._taut, self._evaluations = _TAUT, 0
-        self._work, self._start = np.zeros_like(self.x), np.zeros_like(self.x)
-
-    def _foam_contact(self, foam: Foam) -> FoamContact:
-        """Contact with the stiffness of each vertex's fabric on the foam, times its rest area."""
-        cover = self.cover
-        fabrics = [material.fabric for material in cover.materials]
-        half = np.array([0.5 * f.thickness for f in fabrics])
-        waves = np.array([wave_stiffness(f, foam.material) for f in fabrics])
-        area = np.zeros(len(cover.rest))
-        np.add.at(area, cover.faces, cover.rest_area[:, None] / 3.0)
-        field = distance_field(foam.vertices, foam.faces)
-        return FoamContact(field, half[self.panel], waves[self.panel], area)
+        self._work, self._start = np.zeros_like(self.state), np.zeros_like(self.x)
 
     def resume(self, start: Solution) -> None:
         """Take over the state of an earlier solution of the same mesh."""
@@ -117,8 +122,8 @@ class Process:
         for tie in self.ties.ties:
             if tie.name in start.multipliers:
                 self.ties.multiplier[tie.rows] = start.multipliers[tie.name]
-        if self.friction is not None:
-            np.copyto(self.friction.anchor, start.friction_anchor)
+        if self.foundation is not None:
+            np.copyto(self.foundation.friction.anchor, start.friction_anchor)
 
     def step(self, step: Step, *, refactor: bool) -> Record:
         """Advance by one backward-Euler step; ``refactor`` renews the matrix."""
@@ -128,9 +133,17 @@ class Process:
         np.multiply(self.v, _KEPT_VELOCITY * self.dt, out=self.inertia.free)
         self.inertia.free += self.x
         if refactor or self._factor is None:
-            self._factor = Factor(self._matrix())
+            self._factor = self._extended(Factor(self._matrix()))
         limit = _STEP_TOLERANCE * self._force_scale()
         return self._descend(self._factor, limit, self.iterations)
+
+    def begin(self, *, rest: bool = False) -> None:
+        """Begin a stage, or the way to rest with all ties closed."""
+        self._factor = None
+        if self.foundation is not None:
+            self.foundation.begin(self.state)
+        if rest:
+            self.ties.close()
 
     def settle(self, dt: float, record: Record, iterations: int) -> Record:
         """Minimise from rest with an inertia of step ``dt``, hardly felt when that is long."""
@@ -138,7 +151,7 @@ class Process:
         self._lag()
         np.copyto(self.inertia.free, self.x)
         limit = max(_REST_TOLERANCE, 0.02 * record.residual) * self._force_scale()
-        record = self._descend(self._split(), limit, iterations)
+        record = self._descend(self._extended(self._split()), limit, iterations)
         if self._evaluations > _BACKTRACKING * record.iterations:
             self._taut = min(5.0 * self._taut, 1.0)
         return record
@@ -147,9 +160,11 @@ class Process:
         """Measure the state with nothing lagging: the balance is that of forces at ``x``."""
         self._lag()
         scale = self._force_scale()
-        elastic = self._elastic.value(self.x, self._work)
-        foam = 0.0 if self.contact is None else self.contact.value(self.x, self._work)
-        energy = self._static.value(self.x, self._work)
+        elastic = self._elastic.value(self.state, self._work)
+        foam = 0.0
+        if self.foundation is not None:
+            foam = self.foundation.energy(self.state, self._work)
+        energy = self._static.value(self.state, self._work)
         if not np.isfinite(energy):
             raise SolverError(f"energy is {energy} at {self.time:.3g} s: the cover has blown up")
         speed2 = np.einsum("ij,ij->i", self.v, self.v)
@@ -168,12 +183,12 @@ class Process:
         """Sum of the forces on the cover by cause, each (3,) [N]."""
         forces = {}
         parts: dict[str, Energy] = {"weight": self.gravity, "ties": self.ties}
-        if self.contact is not None and self.friction is not None:
-            parts |= {"contact": self.contact, "friction": self.friction}
+        if self.foundation is not None:
+            parts |= {"contact": self.foundation.contact, "friction": self.foundation.friction}
         for name, energy in parts.items():
             self._work.fill(0.0)
-            energy.value(self.x, self._work)
-            forces[name] = -self._work.sum(axis=0)
+            energy.value(self.state, self._work)
+            forces[name] = -self._work[: len(self.x)].sum(axis=0)
         return forces
 
     def _descend(self, factor: Preconditioner, limit: float, iterations: int) -> Record:
@@ -181,7 +196,7 @@ class Process:
         np.copyto(self._start, self.x)
         descent = self._lbfgs.minimise(
             self._moving,
-            self.x,
+            self.state,
             factor,
             done=lambda gradient: largest_row(gradient) <= limit,
             iterations=iterations,
@@ -195,10 +210,11 @@ class Process:
         return record
 
     def _lag(self) -> None:
-        """Refresh what a minimisation holds fixed: normal forces, normals, friction anchors."""
-        if self.contact is not None and self.friction is not None:
-            self.contact.update(self.x)
-            self.friction.update(self.x)
+        if self.foundation is not None:
+            self.foundation.lag(self.state)
+
+    def _extended(self, sheet: Preconditioner) -> Preconditioner:
+        return sheet if self.foundation is None else self.foundation.extend(sheet)
 
     def _force_scale(self) -> float:
         """Mean over the vertices of the elastic force [N], or of the weight if that is more.
@@ -206,8 +222,8 @@ class Process:
         A sheet that lies level has weight but no elastic forces.
         """
         self._work.fill(0.0)
-        self._elastic.value(self.x, self._work)
-        elastic = np.sqrt(np.einsum("ij,ij->i", self._work, self._work)).mean()
+        self._elastic.value(self.state, self._work)
+        elastic = np.sqrt(np.einsum("ij,ij->i", self._work, self._work)).sum() / len(self.x)
         return max(float(elastic), float(self.gravity.weight.mean()))
 
     def _matrix(self) -> csc_array:
@@ -228,8 +244,8 @@ class Process:
         np.add.at(arch, self.cover.faces, (curvature2 * self.cover.rest_area / 3.0)[:, None])
         diagonal = self._tension[self.panel] * arch + self.inertia.rate
         diagonal[tied] += _HELD
-        if self.contact is not None:
-            diagonal += np.where(self.contact.force > 0.0, self.contact.per_vertex, 0.0)
+        if self.foundation is not None:
+            diagonal += self.foundation.contact.stiffness().diagonal()
         across = (
             self.sheet.bending.stiffness()
             + self._taut * self.sheet.stiffness()

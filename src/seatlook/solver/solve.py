@@ -19,7 +19,7 @@ from seatlook.solver.verdict import figures, reasons, unrest
 _REST = "at rest"
 _ROUNDS = 40  # of settling, each with the inertia of a time step twice as long
 _REST_ITERATIONS = 300  # of one round
-_MOST_ITERATIONS = 6000  # of all rounds
+_MOST_ITERATIONS = 10_000  # of all rounds
 _REFACTOR = 2  # time steps that share a factor
 
 
@@ -82,8 +82,10 @@ def solve(
     run = _Run(process, plan, clock, progress)
     for i, step in enumerate(ahead):
         first = i == 0 or ahead[i - 1].stage != step.stage
-        index = plan.index(step)
-        run.add(step.stage, process.step(step, refactor=first or index % _REFACTOR == 0))
+        if first:
+            process.begin()
+        refactor = first or plan.index(step) % _REFACTOR == 0
+        run.add(step.stage, process.step(step, refactor=refactor))
         last = i + 1 == len(ahead) or ahead[i + 1].stage != step.stage
         if last and snapshot is not None:
             snapshot(run.solution(step.stage, ["settling has not been done"]))
@@ -122,7 +124,7 @@ class _Run:
     def settle(self) -> None:
         """Repeat the static solve until all that lags agrees with the shape."""
         process = self.process
-        process.ties.close()
+        process.begin(rest=True)
         record, spent, dt = process.record(), 0, process.dt
         for _ in range(_ROUNDS):
             left = min(_REST_ITERATIONS, _MOST_ITERATIONS - spent)
@@ -142,7 +144,7 @@ class _Run:
             name: np.array([getattr(record, name) for record in self.records], dtype=float)
             for name in Record._fields
         }
-        free = np.full_like(process.x, np.nan)
+        foundation, free = process.foundation, np.full_like(process.x, np.nan)
         seconds = time.process_time() - self.clock
         return Solution(
             cover=process.cover,
@@ -154,7 +156,7 @@ class _Run:
             multipliers=MappingProxyType(
                 {t.name: ties.multiplier[t.rows].copy() for t in ties.ties}
             ),
-            friction_anchor=free if process.friction is None else process.friction.anchor,
+            friction_anchor=free if foundation is None else foundation.friction.anchor,
             stage=stage,
             status="not converged" if why else "converged",
             reason="; ".join(why),

@@ -62,7 +62,7 @@ class Ties:
         self.target = self.goal.copy()
         self.multiplier = np.zeros((count, 3))
         self._gap = np.zeros((count, 3))
-        self._points = csr_array(
+        self._weights = csr_array(
             (self.weights.ravel(), self.vertices.ravel(), 4 * np.arange(count + 1)),
             shape=(count, len(stiffness)),
         )
@@ -97,6 +97,11 @@ class Ties:
         """Give all ties their full stiffness and final targets."""
         np.copyto(self.stiff, self.full)
         np.copyto(self.target, self.goal)
+
+    def points(self, kind: Kind) -> csc_array:
+        """Weights (s, n) of the vertices in the gaps of a kind."""
+        rows = [np.arange(t.rows.start, t.rows.stop) for t in self.ties if t.kind == kind]
+        return csc_array(self._weights[np.concatenate([np.zeros(0, np.int64), *rows])])
 
     def largest_gap(self, x: FloatArray, kind: Kind) -> float:
         """Largest gap of all ties of a kind [m], 0 if there is none."""
@@ -137,8 +142,8 @@ class Ties:
 
     def stiffness(self) -> csc_array:
         """Scalar stiffness of all springs that pull."""
-        p = self._points
-        return csc_array(p.T @ (diags_array(self.stiff) @ p))
+        w = self._weights
+        return csc_array(w.T @ (diags_array(self.stiff) @ w))
 
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
         """Second derivative [N/m], constant and never indefinite."""

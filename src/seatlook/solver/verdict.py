@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatlook.errors import InvertedElementError
-from seatlook.solver.contact import FoamContact, foam_wavelength
+from seatlook.solver.foundation import Foundation
 from seatlook.solver.process import RESIDUAL, Process, Record
 
 SEAM_GAP = 1e-4  # m
@@ -27,8 +27,8 @@ def reasons(process: Process, record: Record) -> list[str]:
     """
     _check_faces(process)
     found = unrest(process, record)
-    if process.contact is not None:
-        found += _contact_reasons(process, process.contact)
+    if process.foundation is not None:
+        found += _contact_reasons(process, process.foundation)
     return found
 
 
@@ -63,12 +63,11 @@ def figures(process: Process, records: Sequence[Record]) -> dict[str, float]:
     }
     for name, force in process.resultants().items():
         result |= {f"{name}_{axis}": float(f) for axis, f in zip("xyz", force, strict=True)}
-    if process.contact is not None and process.cover.foam is not None:
-        result |= _contact_figures(process, process.contact)
-        foam = process.cover.foam.material
-        waves = [foam_wavelength(m.fabric, foam) for m in process.cover.materials]
-        result["wavelength"] = min(waves)
-        result["wavelength_over_h"] = min(waves) / process.cover.element_size
+    if process.foundation is not None:
+        result |= process.foundation.figures(process.state)
+        result["contact_resultant_error"] = _resultant_error(process)
+        result["wavelength"] = process.foundation.wavelength
+        result["wavelength_over_h"] = process.foundation.wavelength / process.cover.element_size
     return result
 
 
@@ -83,28 +82,16 @@ def _check_faces(process: Process) -> None:
         )
 
 
-def _contact_figures(process: Process, contact: FoamContact) -> dict[str, float]:
-    """Depth, pressure and balance of the contact."""
-    pressure = contact.pressure()
-    return {
-        "contact_depth_max": float(contact.depth.max()),
-        "contact_pressure_max": float(pressure.max()),
-        "contact_compression_max": contact.compression(process.x),
-        "contact_force": float(contact.force.sum()),
-        "contact_vertices": float(np.count_nonzero(contact.force)),
-        "contact_resultant_error": _resultant_error(process),
-    }
-
-
-def _contact_reasons(process: Process, contact: FoamContact) -> list[str]:
+def _contact_reasons(process: Process, foundation: Foundation) -> list[str]:
     """Where the foam is asked for more than its curve and thickness give."""
     found = []
-    foam = process.cover.foam
-    highest = float(contact.pressure().max())
-    limit = float(foam.material.stress[-1]) if foam is not None else np.inf
-    if highest > limit:
-        found.append(f"pressure {highest:.3g} Pa on the foam, whose curve ends at {limit:.3g} Pa")
-    compression = contact.compression(process.x)
+    figures = foundation.figures(process.state)
+    pressure, highest = figures["contact_column_pressure_max"], foundation.material.stress[-1]
+    if pressure > highest:
+        found.append(
+            f"pressure {pressure:.3g} Pa on the foam, whose curve ends at {highest:.3g} Pa"
+        )
+    compression = figures["contact_compression_max"]
     if compression >= COMPRESSION:
         found.append(f"foam pressed to {100 * compression:.0f} % of its thickness")
     error = _resultant_error(process)

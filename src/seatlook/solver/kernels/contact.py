@@ -8,17 +8,19 @@ from seatlook.solver.kernels.distance import distance, distance_hessian, near
 
 
 @njit(cache=True)
-def contact_value(x, coefficients, grid, offset, stiffness, gradient):
-    """Energy k/2 <offset - phi>^2 summed over vertices; adds its gradient."""
+def contact_value(x, coefficients, grid, half, settled, stiffness, gradient, settled_gradient):
+    """Energy k/2 <half - settled - phi>^2 summed over vertices; adds both its gradients."""
     energy = 0.0
-    for i in range(len(x)):
-        if not near(coefficients, grid, x[i, 0], x[i, 1], x[i, 2], offset[i]):
+    for i in range(len(stiffness)):
+        offset = half[i] - settled[i]
+        if not near(coefficients, grid, x[i, 0], x[i, 1], x[i, 2], offset):
             continue
         phi, gx, gy, gz = distance(coefficients, grid, x[i, 0], x[i, 1], x[i, 2])
-        depth = offset[i] - phi
+        depth = offset - phi
         if depth > 0.0:
             force = stiffness[i] * depth
             energy += 0.5 * force * depth
+            settled_gradient[i] -= force
             gradient[i, 0] -= force * gx
             gradient[i, 1] -= force * gy
             gradient[i, 2] -= force * gz
@@ -26,31 +28,33 @@ def contact_value(x, coefficients, grid, offset, stiffness, gradient):
 
 
 @njit(cache=True)
-def contact_state(x, coefficients, grid, offset, stiffness, force, normal, depth):
-    """Normal force, unit normal and depth under ``offset`` of every vertex; 0 when free."""
-    for i in range(len(x)):
+def contact_state(x, coefficients, grid, half, settled, stiffness, force, normal, depth):
+    """Normal force, unit normal and depth in the springs of every vertex; 0 when free."""
+    for i in range(len(stiffness)):
         force[i], depth[i] = 0.0, 0.0
         normal[i] = 0.0
-        if not near(coefficients, grid, x[i, 0], x[i, 1], x[i, 2], offset[i]):
+        offset = half[i] - settled[i]
+        if not near(coefficients, grid, x[i, 0], x[i, 1], x[i, 2], offset):
             continue
         phi, gx, gy, gz = distance(coefficients, grid, x[i, 0], x[i, 1], x[i, 2])
-        if phi < offset[i]:
+        if phi < offset:
             norm = (gx * gx + gy * gy + gz * gz) ** 0.5
-            depth[i] = offset[i] - phi
+            depth[i] = offset - phi
             force[i] = stiffness[i] * depth[i] * norm
             normal[i, 0], normal[i, 1], normal[i, 2] = gx / norm, gy / norm, gz / norm
 
 
 @njit(cache=True)
-def contact_blocks(x, coefficients, grid, offset, stiffness, definite, blocks):
+def contact_blocks(x, coefficients, grid, half, settled, stiffness, definite, blocks):
     """Second derivative (3, 3) per vertex; ``definite`` leaves the curvature of phi out."""
-    for i in range(len(x)):
+    for i in range(len(stiffness)):
         blocks[i] = 0.0
         px, py, pz = x[i, 0], x[i, 1], x[i, 2]
-        if not near(coefficients, grid, px, py, pz, offset[i]):
+        offset = half[i] - settled[i]
+        if not near(coefficients, grid, px, py, pz, offset):
             continue
         phi, gx, gy, gz = distance(coefficients, grid, px, py, pz)
-        depth = offset[i] - phi
+        depth = offset - phi
         if depth <= 0.0:
             continue
         g = (gx, gy, gz)

@@ -12,7 +12,7 @@ def friction_value(x, anchor, normal, limit, slip, gradient):
     The force rises as limit (2 y - y^2), y = |u| / slip, and stays at ``limit`` beyond.
     """
     energy = 0.0
-    for i in range(len(x)):
+    for i in range(len(limit)):
         if limit[i] <= 0.0:
             continue
         u0, u1, u2 = x[i, 0] - anchor[i, 0], x[i, 1] - anchor[i, 1], x[i, 2] - anchor[i, 2]
@@ -36,7 +36,7 @@ def friction_value(x, anchor, normal, limit, slip, gradient):
 @njit(cache=True)
 def friction_blocks(x, anchor, normal, limit, slip, blocks):
     """Second derivative (3, 3) per vertex, never indefinite."""
-    for i in range(len(x)):
+    for i in range(len(limit)):
         blocks[i] = 0.0
         if limit[i] <= 0.0:
             continue
@@ -62,7 +62,7 @@ def friction_blocks(x, anchor, normal, limit, slip, blocks):
 @njit(cache=True)
 def drag_anchor(x, anchor, normal, force, slip):
     """Set anchors where contact begins, drop them where it ends, pull them along in sliding."""
-    for i in range(len(x)):
+    for i in range(len(force)):
         if force[i] <= 0.0:
             anchor[i] = float("nan")
             continue
