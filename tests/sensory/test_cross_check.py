@@ -1,10 +1,16 @@
 """Log ratio and SSIM by hand, and the verdict over all measures."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
+from scipy.stats import spearmanr
 
 from seatlook.errors import InputError
 from seatlook.sensory.cross_check import Measures, dissimilarity, log_ratio, more_visible
+from seatlook.sensory.vwi import score
+from sensory.sweep import PPD, scenes
 
 
 def naive_ssim(x, y):
@@ -57,3 +63,30 @@ def test_a_tie_or_a_disagreement_is_no_order():
 def test_white_must_be_a_luminance():
     with pytest.raises(InputError, match="white: got 0, expected a luminance above 0"):
         dissimilarity(np.ones((16, 16)), np.ones((16, 16)), white=0)
+
+
+@pytest.fixture(scope="module")
+def sweep():
+    """Measures of the 54 scenes, and what ColorVideoVDP was recorded to say of them."""
+    record = json.loads((Path(__file__).parents[1] / "data" / "cvvdp.json").read_text())
+    found = {}
+    for name, test, reference in scenes():
+        vwi = score(test, reference, pixels_per_degree=PPD).vwi
+        found[name] = (vwi, log_ratio(test, reference))
+    assert list(found) == list(record["lost"])
+    return np.array(list(found.values())).T, np.array(list(record["lost"].values()))
+
+
+@pytest.mark.validate
+def test_vwi_ranks_as_an_independent_metric_does(sweep):
+    """Two models of one family: agreement between models, not truth."""
+    (vwi, ratio), lost = sweep
+    assert spearmanr(vwi, lost).statistic > 0.9
+    assert spearmanr(vwi, lost).statistic > spearmanr(ratio, lost).statistic
+
+
+@pytest.mark.validate
+def test_both_name_the_same_worst_light_for_most_looks(sweep):
+    (vwi, _), lost = sweep
+    same = vwi.reshape(9, 6).argmax(axis=1) == lost.reshape(9, 6).argmax(axis=1)
+    assert same.sum() >= 6, same
