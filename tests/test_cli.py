@@ -279,9 +279,17 @@ def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
     assert heads.split()[:3] == ["zone", "area", "w2_mean"]
     assert any(row.startswith("INSERT interior") for row in rows)
     assert len(list(evaluated.glob("images/*/*.png"))) == 6
-    assert len(list(evaluated.glob("maps/*.png"))) == 4
+    assert len(list(evaluated.glob("maps/*.png"))) == 5
     page = (evaluated / "index.html").read_text()
-    for part in ("suede under bulb left", "W_compression", "judgement", "texture pvc"):
+    for part in (
+        "suede under bulb left",
+        "W_compression",
+        "judgement",
+        "texture pvc",
+        "Standoff",
+        "Shape against the foam",
+        "ease [mm]",
+    ):
         assert part in page
     assert '<td class="missed">NO</td>' in page
     assert "coarser than an eighth" in page

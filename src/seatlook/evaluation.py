@@ -15,8 +15,9 @@ from seatlook import io, pbr
 from seatlook.assembly import assemble
 from seatlook.errors import InputError
 from seatlook.files import replacing
-from seatlook.model import Camera, Cover, Limit, Scene, Solution, WrinkleMap
+from seatlook.model import Camera, Cover, FloatArray, Limit, Scene, Solution, WrinkleMap
 from seatlook.solver import solve
+from seatlook.solver.standoff import standoff
 from seatlook.wrinkle import ZoneRow, surface_strains, wrinkle_indices, zone_table
 
 if TYPE_CHECKING:
@@ -31,12 +32,16 @@ MAPS: Mapping[str, str] = MappingProxyType(
         "w_compression": "the part of W2 where there is too much fabric",
     }
 )
+STANDOFF = "distance from the foam as drawn: above 0 it stands off, below 0 it presses in"
+_STANDOFF_RANGE_MM = 5.0  # the same on every page, so that pages compare
 
 
 class Progress(Protocol):
     """What ``evaluate`` calls as it goes on: the step's name, and the solver's figures if any."""
 
-    def __call__(self, name: str, /, **figures: float | str) -> None: ...
+    def __call__(self, name: str, /, **figures: float | str) -> None:
+        """Show the step."""
+        ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,6 +66,7 @@ class Evaluation:
     solution: Solution
     indices: WrinkleMap
     zones: tuple[ZoneRow, ...]
+    standoff: FloatArray
     camera: Camera
     pictures: MappingProxyType[tuple[str, str], str]
     maps: MappingProxyType[str, tuple[str, Picture]]
@@ -100,6 +106,7 @@ def evaluate(
     indices = wrinkle_map(scene, solution)
     zones = zone_table(solution, indices)
     _write_zones(zones, out / "zones.csv")
+    off = standoff(solution)
     camera = scene.cameras[0]
     return Evaluation(
         scene=scene,
@@ -107,9 +114,15 @@ def evaluate(
         solution=solution,
         indices=indices,
         zones=zones,
+        standoff=off,
         camera=camera,
         pictures=draw_pictures(scene, solution, camera, out, say),
-        maps=draw_maps(solution, indices, camera, out, say),
+        maps=MappingProxyType(
+            {
+                **draw_maps(solution, indices, camera, out, say),
+                "standoff": draw_standoff(solution, off, camera, out),
+            }
+        ),
         verdicts=tuple(_judge(limit, scene, zones) for limit in scene.limits),
     )
 
@@ -160,6 +173,23 @@ def draw_maps(
         picture.save(out / path)
         maps[name] = (path, picture)
     return MappingProxyType(maps)
+
+
+def draw_standoff(
+    solution: Solution, off: FloatArray, camera: Camera, out: Path
+) -> tuple[str, Picture]:
+    """Draw the standoff (m,) [m]; faces away from the foam stay grey."""
+    path = "maps/standoff.png"
+    picture = pbr.render_map(
+        solution,
+        1e3 * off,
+        camera=camera,
+        title=f"Standoff: {STANDOFF}",
+        unit="mm",
+        value_range=(-_STANDOFF_RANGE_MM, _STANDOFF_RANGE_MM),
+    )
+    picture.save(out / path)
+    return path, picture
 
 
 def label(index: str) -> str:

@@ -129,10 +129,15 @@ def test_a_missed_limit_is_said_in_words_not_in_colour_alone(tmp_path):
     assert '<td class="missed">NO</td>' in text
 
 
-def test_seams_have_a_table_of_their_own(tmp_path):
+def test_seams_and_shape_have_tables_of_their_own(tmp_path):
     seams = Table(heads=("seam", "ease [%]"), rows=(("left", 1.25),))
-    text = write_page(page_data(tmp_path, seams=seams), tmp_path).read_text(encoding="utf-8")
+    shape = Table(heads=("zone", "rms [mm]"), rows=(("insert", 0.375),))
+    data = page_data(tmp_path, seams=seams, shape=shape)
+    text = write_page(data, tmp_path).read_text(encoding="utf-8")
+    assert 'id="shape-head"' in text
+    assert "0.375" in text
     assert 'id="seams-head"' in text
     assert "1.25" in text
     bare = write_page(page_data(tmp_path), tmp_path).read_text(encoding="utf-8")
     assert "seams-head" not in bare
+    assert "shape-head" not in bare

@@ -94,6 +94,7 @@ class PageData:
     maps : W1, W2, W_stretch, W_compression, ...
     zones : one row per zone
     seams : one row per seam: its two lengths and the ease between them
+    shape : one row per zone: how far it stands off the foam
     parameters : what they belong to -> table of keys, values and sources
     provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
     checks : solver conditions and accept limits
@@ -116,6 +117,7 @@ class PageData:
     provenance: MappingProxyType[str, str]
     status: str
     seams: Table | None = None
+    shape: Table | None = None
     checks: tuple[Check, ...] = ()
     warnings: tuple[str, ...] = ()
     history: MappingProxyType[str, tuple[float, ...]] = field(

@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 from seatlook import __version__
 from seatlook.assembly.ease import SeamEase, seam_ease
-from seatlook.evaluation import MAPS, RESULT, Evaluation, label
+from seatlook.evaluation import MAPS, RESULT, STANDOFF, Evaluation, label
 from seatlook.model import Light, Rig, Scene, Solution
 from seatlook.pbr import ev100, lux_at_seat, offscreen_backend
 from seatlook.report.chart import number
@@ -19,6 +19,7 @@ from seatlook.report.page import write_page
 from seatlook.report.parameters import parameter_tables
 from seatlook.solver import foam_wavelength, verdict
 from seatlook.solver.process import RESIDUAL
+from seatlook.solver.standoff import zone_standoff
 
 # figure -> what it is, its limit, factor to the unit, unit
 _CONDITIONS: Mapping[str, tuple[str, float, float, str]] = {
@@ -76,6 +77,7 @@ def page_data(evaluation: Evaluation) -> PageData:
         provenance=MappingProxyType(dict(_provenance(evaluation, waves))),
         status=solution.status,
         seams=seam_table(scene),
+        shape=_shape(evaluation),
         checks=(*_conditions(solution), *_limits(evaluation)),
         warnings=tuple(_warnings(evaluation, waves)),
         history=MappingProxyType(
@@ -110,12 +112,14 @@ def _described(light: Light) -> str:
 def _maps(evaluation: Evaluation) -> Iterator[MapView]:
     for name, (path, picture) in evaluation.maps.items():
         low, high = picture.value_range
+        picture_unit, meaning = ("mm", STANDOFF) if name == "standoff" else ("1", MAPS[name])
         yield MapView(
             name=label(name),
             image=path,
             low=low,
             high=high,
-            meaning=MAPS[name],
+            unit=picture_unit,
+            meaning=meaning,
         )
 
 
@@ -148,6 +152,26 @@ def _zones(evaluation: Evaluation) -> Table:
                 1e3 * row.element_size,
             )
             for row in sorted(evaluation.zones, key=lambda row: -row.w2_p95)
+            if row.zone != "free edge"
+        ),
+    )
+
+
+def _shape(evaluation: Evaluation) -> Table:
+    """Standoff of the zones, the farthest from the foam first, without the free edges."""
+    rows = zone_standoff(evaluation.solution, evaluation.standoff)
+    return Table(
+        heads=("zone", "mean [mm]", "rms [mm]", "lowest [mm]", "highest [mm]", "measured [%]"),
+        rows=tuple(
+            (
+                row.zone,
+                1e3 * row.mean,
+                1e3 * row.rms,
+                1e3 * row.lowest,
+                1e3 * row.highest,
+                100 * row.measured,
+            )
+            for row in sorted(rows, key=lambda row: -row.rms)
             if row.zone != "free edge"
         ),
     )
