@@ -72,8 +72,6 @@ class FoamContact:
     ) -> None:
         self.field, self.area, self.half_thickness = field, area, half_thickness
         self.per_vertex = stiffness * area
-        # What the sheet sees once the foam below may settle, for the prefactored matrix.
-        self.seen = self.per_vertex
         n = len(area)
         self.force, self.depth, self.normal = np.zeros(n), np.zeros(n), np.zeros((n, 3))
         self._blocks, self._firm = np.zeros((n, 3, 3)), np.zeros((2, n))
@@ -129,8 +127,8 @@ class FoamContact:
         return result
 
     def stiffness(self) -> csc_array:
-        """Foam stiffness that vertices see which touched at the last update."""
-        return diags_array(np.where(self.force > 0.0, self.seen, 0.0)).tocsc()
+        """Foam stiffness of the vertices that touched at the last update."""
+        return diags_array(np.where(self.force > 0.0, self.per_vertex, 0.0)).tocsc()
 
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
         """Second derivative in the positions [N/m]; ``definite`` leaves phi's curvature out."""

@@ -85,7 +85,6 @@ class Settlement:
         modulus = self._foam.stress[1] / self._foam.strain[1]
         upper, shear = kerr_layers(modulus / float(np.median(self.thickness)) / wave)
         self.contact.per_vertex = upper * self._wave * self.contact.area
-        self.contact.seen = 0.5 * self._wave * self.contact.area
         self._layer = csr_array(shear * wave * (length / (2.0 * np.pi)) ** 2 * self._spread)
         self._knots = self._column(upper)
         s = settled_part(state, n)
@@ -138,11 +137,12 @@ class Settlement:
 
 
 class SettledFactor:
-    """Preconditioner of positions and settlements together, settlements eliminated exactly.
+    """Preconditioner of positions and settlements together, by block elimination.
 
     Parameters
     ----------
-    sheet : preconditioner of the positions on foam that settles at once
+    sheet : preconditioner of the positions; best on the upper springs alone, although foam that
+        settles is softer (measured: half the iterations)
     columns : factor of ``Settlement.matrix``
     link : (n,) float64 [N/m]   springs in contact between sheet and columns
     normal : (n, 3) float64     their directions

@@ -18,6 +18,7 @@ from seatlook.solver.verdict import figures, reasons, unrest
 
 _REST = "at rest"
 _ROUNDS = 40  # of settling, each with the inertia of a time step twice as long
+_LONGER = 10.0  # than a time step, the first of them
 _REST_ITERATIONS = 300  # of one round
 _MOST_ITERATIONS = 10_000  # of all rounds
 _REFACTOR = 2  # time steps that share a factor
@@ -125,7 +126,7 @@ class _Run:
         """Repeat the static solve until all that lags agrees with the shape."""
         process = self.process
         process.begin(rest=True)
-        record, spent, dt = process.record(), 0, process.dt
+        record, spent, dt = process.record(), 0, _LONGER * process.dt
         for _ in range(_ROUNDS):
             left = min(_REST_ITERATIONS, _MOST_ITERATIONS - spent)
             record = process.settle(dt, record, left)
