@@ -81,14 +81,9 @@ def merge_votes(files: Mapping[Path, str], panel: Panel) -> Ballots:
             continue
         judge = document["judge"]
         if seeds.setdefault(judge, document["seed"]) != document["seed"]:
-            problems.append(
-                Problem(
-                    key="seed",
-                    got=f"{document['seed']} for judge {judge!r}",
-                    expected=f"{seeds[judge]}, as in this judge's earlier file",
-                    file=path,
-                )
-            )
+            got = f"{document['seed']} for judge {judge!r}"
+            expected = f"{seeds[judge]}, as in this judge's earlier file"
+            problems.append(Problem(key="seed", got=got, expected=expected, file=path))
             continue
         again = 0
         for number, vote in _votes(document, panel, path, problems):
@@ -99,14 +94,10 @@ def merge_votes(files: Mapping[Path, str], panel: Panel) -> Ballots:
                 again += 1
             else:
                 found[key] = None
-                problems.append(
-                    Problem(
-                        key=f"votes[{number}]",
-                        got=f"a second answer of judge {judge!r} to trial {vote.trial}",
-                        expected="one answer; neither counts",
-                        file=path,
-                    )
-                )
+                got = f"a second answer of judge {judge!r} to trial {vote.trial}"
+                expected = "one answer; neither counts"
+                place = f"votes[{number}]"
+                problems.append(Problem(key=place, got=got, expected=expected, file=path))
         if again:
             notices.append(f"{path}: {again} votes of judge {judge!r} sent twice count once")
     votes = _with_repeats([vote for vote in found.values() if vote is not None], problems)
