@@ -15,6 +15,7 @@ from seatlook.study.amplitude import (
     peak_to_valley,
     reference_rig,
 )
+from seatlook.study.grid import score_grid
 from seatlook.study.light_search import search_light, sun_rig
 from seatlook.study.reference import region, solver_faces
 from seatlook.study.view import View, on_foam
@@ -177,3 +178,26 @@ def test_the_null_gate(view, wrinkled):
     assert np.abs(lain.positions[:, 2] - ridge(*lain.positions[:, :2].T)).mean() < 0.6e-3
     with pytest.raises(InputError, match="foam: got none, expected the surface the cover was made"):
         view.null_score(BLACK, RIG)
+
+
+def test_a_grid_names_the_worst_rig_and_the_least_visible_texture(view):
+    across, along = (
+        Rig(name=n, lights=(sun(elevation_deg=30, azimuth_deg=a),), ambient=600.0)
+        for n, a in (("across", 90), ("along", 0))
+    )
+    ladder = Ladder(height=1e-4, heights=np.array([0, 1e-4]), vwi=np.array([0, 50.0]))
+    grid = score_grid(view, {"black": BLACK, "rough": ROUGH}, (along, across), ladder=ladder)
+    assert grid.vwi.shape == (2, 2)
+    assert grid.worst_rig("rough") == "across"
+    assert grid.least_visible == ("black", "rough")[int(grid.vwi.max(axis=1).argmin())]
+    assert grid.vwi[1, 1] == view.vwi(ROUGH, across)
+    assert grid.height["rough", "along"] == ladder.equivalent(grid.vwi[1, 0])
+    measures = [grid.sights[name, "across"].measures for name in ("black", "rough")]
+    signs = {
+        np.sign(getattr(measures[0], key) - getattr(measures[1], key))
+        for key in ("vwi", "log_ratio", "dissimilarity")
+    }
+    wanted = {(1.0,): "first", (-1.0,): "second"}.get(tuple(signs), "not separable")
+    assert grid.compare("black", "rough", "across") == wanted
+    with pytest.raises(InputError, match="grid: got 1 textures, rigs along, along"):
+        score_grid(view, {"black": BLACK}, (along, along))
