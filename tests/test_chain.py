@@ -54,7 +54,7 @@ LIMP = {"bending_warp": 1e-4, "bending_weft": 8e-5, "bending_twist": 4e-5}
 
 # A seam is a hinge: a stiff cover without tension stands up at it like a roof (0.7 mm here), so the
 # stiff one is cut small, as covers are.
-@pytest.fixture(scope="module", params=[(LIMP, 0.0), ({}, 0.005)], ids=["limp", "stiff, taut"])
+@pytest.fixture(scope="module", params=[(LIMP, 0.0), ({}, 0.0025)], ids=["limp", "stiff, taut"])
 def sewn(request):
     bending, tension = request.param
     cloth = scenes.material(thickness=0.001, **bending)

@@ -140,9 +140,7 @@ class Builder:
         seams = {s.name: s for s in self.pattern.seams}
         line = self.edge(seams[hook.line].a) if hook.line in seams else self._lines[hook.line]
         wire = scene.foam.curves[hook.wire]
-        return anchor_on(
-            [line], curve_of(wire), x, self.h, name=hook.name, kind="hook", stage=hook.stage
-        )
+        return anchor_on([line], curve_of(wire), x, name=hook.name, kind="hook", stage=hook.stage)
 
     def frame(self, frame: Frame, scene: Scene, x: FloatArray) -> Anchor:
         """Pull free edges to a curve below the foam."""
@@ -151,7 +149,6 @@ class Builder:
             self.chain(frame.edges),
             curve,
             x,
-            self.h,
             name=frame.name,
             kind="frame",
             stage=frame.stage,

@@ -72,23 +72,19 @@ def anchor_on(
     lines: Sequence[Line],
     curve: Callable[[FloatArray], FloatArray],
     x: FloatArray,
-    h: float,
     *,
     name: str,
     kind: Literal["hook", "frame"],
     stage: str,
 ) -> Anchor:
-    """Spread points over the lines and send each to its share of the curve, shorter way round."""
-    total = sum(ln.length for ln in lines)
-    parts, shares, lengths = [], [], []
-    done = 0.0
-    for line in lines:
-        at, length = stitches(line.length / total, total, max(h, line.spacing))
-        parts.append(line.points(at * total))
-        shares.append(done + at)
-        lengths.append(length)
-        done += line.length / total
-    points, share = join(parts), np.concatenate(shares)
+    """Send every vertex of the lines to its share of the curve, the shorter way round.
+
+    One point per vertex: more could not all reach their targets.
+    """
+    before = np.cumsum([0.0, *(ln.length for ln in lines)])
+    points = join([ln.points(ln.arc) for ln in lines])
+    share = np.concatenate([b + ln.arc for b, ln in zip(before, lines, strict=False)]) / before[-1]
+    steps = [np.concatenate([[0.0], np.diff(ln.arc), [0.0]]) / 2 for ln in lines]
     start = points.at(x)
     target, turned = curve(share), curve(1.0 - share)
     if np.linalg.norm(turned - start) < np.linalg.norm(target - start):
@@ -98,6 +94,6 @@ def anchor_on(
         kind=kind,
         points=points,
         target=target,
-        length=np.concatenate(lengths),
+        length=np.concatenate([step[:-1] + step[1:] for step in steps]),
         stage=stage,
     )

@@ -85,27 +85,39 @@ def merge_votes(files: Mapping[Path, str], panel: Panel) -> Ballots:
             expected = f"{seeds[judge]}, as in this judge's earlier file"
             problems.append(Problem(key="seed", got=got, expected=expected, file=path))
             continue
-        again = 0
-        for number, vote in _votes(document, panel, path, problems):
-            key = (judge, vote.trial)
-            if key not in found:
-                found[key] = vote
-            elif _same(found[key], vote):
-                again += 1
-            else:
-                found[key] = None
-                got = f"a second answer of judge {judge!r} to trial {vote.trial}"
-                expected = "one answer; neither counts"
-                place = f"votes[{number}]"
-                problems.append(Problem(key=place, got=got, expected=expected, file=path))
-        if again:
-            notices.append(f"{path}: {again} votes of judge {judge!r} sent twice count once")
+        _collect(found, document, panel, path, problems, notices)
     votes = _with_repeats([vote for vote in found.values() if vote is not None], problems)
     asked = len(trials(panel, 0))
     for judge, count in Counter(vote.judge for vote in votes).items():
         if count < asked:
             notices.append(f"judge {judge!r} answered {count} of {asked} trials")
     return Ballots(panel=panel, votes=votes, problems=tuple(problems), notices=tuple(notices))
+
+
+def _collect(
+    found: dict[tuple[str, int], Vote | None],
+    document: dict[str, Any],
+    panel: Panel,
+    path: Path,
+    problems: list[Problem],
+    notices: list[str],
+) -> None:
+    """Add one file's votes to those found; an answer that is contradicted becomes None."""
+    judge, again = document["judge"], 0
+    for number, vote in _votes(document, panel, path, problems):
+        key = (judge, vote.trial)
+        if key not in found:
+            found[key] = vote
+        elif _same(found[key], vote):
+            again += 1
+        else:
+            found[key] = None
+            got = f"a second answer of judge {judge!r} to trial {vote.trial}"
+            expected = "one answer; neither counts"
+            place = f"votes[{number}]"
+            problems.append(Problem(key=place, got=got, expected=expected, file=path))
+    if again:
+        notices.append(f"{path}: {again} votes of judge {judge!r} sent twice count once")
 
 
 def _document(
