@@ -4,8 +4,8 @@ import dataclasses
 
 import numpy as np
 import pytest
-import scenes
 
+import scenes
 from seatlook import model
 from seatlook.assembly import assemble
 from seatlook.errors import AssemblyError

@@ -116,7 +116,7 @@ class RenderError(SeatlookError):
     """No picture, or one that would be wrong."""
 
 
-class NoOffscreenContext(RenderError):
+class NoOffscreenContext(RenderError):  # noqa: N818 -- it says what is missing, not what failed
     """No software GL library can be loaded, so nothing can be drawn on this machine."""
 
 

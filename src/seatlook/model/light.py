@@ -125,7 +125,7 @@ def planck_colour(temperature_k: float) -> FloatArray:
         ]
     )
     # Below about 1900 K blue leaves the sRGB triangle; a display cannot show it.
-    return np.maximum(to_rgb @ xyz, 0.0)
+    return np.asarray(np.maximum(to_rgb @ xyz, 0.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,5 +21,5 @@ class Energy(Protocol):
         ...
 
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
-        """Second derivative (3n, 3n) [N/m], vertex by vertex; ``definite`` drops what is not >= 0."""
+        """Second derivative (3n, 3n) [N/m] by vertices; ``definite`` drops what is not >= 0."""
         ...
