@@ -11,6 +11,9 @@ BIN := $(VENV)/bin
 PYTEST := $(BIN)/python -m pytest -q
 TESTS := --doctest-modules tests src/seatlook
 
+# Numba sees a change in the file of a kernel, not in the files of the kernels it calls.
+export NUMBA_CACHE_DIR ?= $(CURDIR)/.numba_cache/$(shell cat src/seatlook/*/kernels/*.py | cksum | cut -d ' ' -f 1)
+
 .PHONY: demo test validate browser check format bench clean
 .DELETE_ON_ERROR:
 

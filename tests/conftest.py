@@ -6,6 +6,9 @@ from pathlib import Path
 
 import pytest
 
+# Run once by hand, with packages that the project does not need.
+collect_ignore = ["sensory/record_cvvdp.py"]
+
 
 @pytest.fixture(scope="session")
 def demo_scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
