@@ -242,6 +242,8 @@ def test_an_interrupted_command_ends_with_130_and_leaves_nothing_half_written(tm
         [sys.executable, "-m", "seatlook", "demo", "--out", str(tmp_path / "demo")],
         stderr=subprocess.PIPE,
         text=True,
+        # A shell's background job passes an ignored interrupt on to its children.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     errors = ""
     try:
