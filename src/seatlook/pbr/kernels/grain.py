@@ -25,9 +25,9 @@ class Textures(NamedTuple):
     cells: float
 
 
-# Order of the maps, and slope by which a stroke leans the nap.
+# Order of the maps, and share of the colour by which a stroke of the hand changes the nap.
 LEATHER, SUEDE, WEAVE = 0, 1, 2
-_STROKE = 0.07
+_STROKE = 0.035
 
 
 @leaf()
@@ -77,7 +77,9 @@ def grain(textures, material, u, v, width):
     alpha = material.roughness**2
     alpha = np.sqrt(alpha * alpha + 2.0 * steep * steep * variance)
     if material.texture == SUEDE:
-        # Marks of the hand: the nap lies this way or that over a few centimetres.
-        mark = smooth(u / 0.045 + 0.3 * smooth(u / 0.08, v / 0.08, 3), v / 0.022, 1)
-        su, share = su + _STROKE / max(steep, 1e-6) * mark, share * (1.0 + 0.07 * mark - 0.07)
+        # Marks of the hand: the nap lies this way or that over a few centimetres. They change the
+        # tone and not the normal: a slope over such a length would be taken for a wrinkle.
+        bend = 0.4 * smooth(u / 0.06, v / 0.06, 3)
+        mark = 4.0 * smooth(u / 0.05 + bend, v / 0.03 + bend, 1)
+        share *= 1.0 + _STROKE * (mark / np.sqrt(1.0 + mark * mark) - 1.0)
     return steep * su, steep * sv, min(1.0, np.sqrt(alpha)), share
