@@ -160,12 +160,12 @@ class SettledFactor:
         n = len(self._link)
         pull, s = settled_part(right, n), settled_part(out, n)
         below = self._columns.column(pull)
-        np.multiply(self._normal, (self._link * below)[:, None], out=self._force)
+        np.multiply(self._normal, -(self._link * below)[:, None], out=self._force)
         self._force += right[:n]
         self._sheet.solve(self._force, out[:n])
         out[n:] = 0.0
         s[:] = self._columns.column(
-            pull + self._link * np.einsum("ij,ij->i", self._normal, out[:n])
+            pull - self._link * np.einsum("ij,ij->i", self._normal, out[:n])
         )
 
 
