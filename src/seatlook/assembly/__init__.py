@@ -8,6 +8,7 @@ import numpy as np
 
 from seatlook import mesh
 from seatlook.assembly.builder import Builder
+from seatlook.assembly.hem import hem_of
 from seatlook.errors import AssemblyError, Problem
 from seatlook.model import Cover, FloatArray, Hook, IntArray, Panel, Scene
 from seatlook.zones import zones
@@ -61,6 +62,7 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
             *(builder.hook(hook, scene, placed) for hook in scene.hooks),
             *(builder.frame(frame, scene, placed) for frame in scene.frames),
         ),
+        hem=hem_of(builder, scene, uv, faces) if scene.hem and scene.pattern.seams else None,
         stages=scene.stages,
         foam=scene.foam,
         element_size=float(mesh.edge_lengths(uv, faces).mean()),

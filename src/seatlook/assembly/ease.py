@@ -89,14 +89,14 @@ def _side(pattern: Pattern, names: list[str], *, reverse: bool) -> tuple[float, 
     done, found = 0.0, []
     for name in names:
         length = pattern.edge_length(name)
-        at = _notches_on(pattern, name)
+        at = notches_on(pattern, name)
         found.append(done + (length - at if reverse else at))
         done += length
     at = np.sort(np.concatenate(found))
     return done, at[(at > _AT_END) & (at < done - _AT_END)] / done
 
 
-def _notches_on(pattern: Pattern, name: str) -> FloatArray:
+def notches_on(pattern: Pattern, name: str) -> FloatArray:
     """Arc lengths (k,) [m] of the notches of an edge."""
     panel = pattern.panel(pattern.edges[name].panel)
     mine = [e.name for e in pattern.edges.values() if e.panel == panel.name]

@@ -37,7 +37,7 @@ def check_wires(
         if wire is None:
             continue
         key = ("hook", number, "wire")
-        length, line = _length(wire), _line_length(hook["line"], pattern)
+        length, line = _length(wire), line_length(hook["line"], pattern)
         if line is not None and line > LONGEST_LINE * length:
             document.report(
                 ("hook", number, "line"),
@@ -75,8 +75,39 @@ def check_overlap(
             )
 
 
-def _line_length(line: str | None, pattern: Pattern | None) -> float | None:
-    """Length of a seam's near side or of an internal line PANEL/LINE; None for unknown names."""
+def check_hem(document: Document, pattern: Pattern | None, hem: bool | None) -> None:
+    """Report panels that their folded allowances would not fit below."""
+    if not hem or pattern is None:
+        return
+    for panel in pattern.panels:
+        points = _sewn_points(panel.name, pattern)
+        if not len(points):
+            continue
+        ring = shapely.LinearRing(panel.cut_outline)
+        width = float(shapely.distance(ring, shapely.points(points)).max())
+        body = shapely.Polygon(panel.outline)
+        if body.buffer(-0.5 * width).is_empty:
+            document.report(
+                ("hem",),
+                f"an allowance of {1e3 * width:.1f} mm on {panel.name}, "
+                f"which is {2e3 * shapely.maximum_inscribed_circle(body).length:.1f} mm wide",
+                "an allowance narrower than its panel",
+            )
+
+
+def _sewn_points(name: str, pattern: Pattern) -> FloatArray:
+    """Vertices (k, 2) of a panel's sewn edges."""
+    sewn = {edge for seam in pattern.seams for edge in (seam.a, *seam.b)}
+    lines = [
+        pattern.edge_points(e.name)
+        for e in pattern.edges.values()
+        if e.panel == name and e.name in sewn
+    ]
+    return np.concatenate([np.zeros((0, 2)), *lines])
+
+
+def line_length(line: str | None, pattern: Pattern | None) -> float | None:
+    """Return the length of a seam's near side or of PANEL/LINE; None for unknown names."""
     if pattern is None or line is None:
         return None
     for seam in pattern.seams:

@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from seatlook.io._schema import MM, Array, Integer, Kind, Named, Number, Rows, Table, Text, Texts
+from seatlook.io._schema import (
+    MM,
+    Array,
+    Flag,
+    Integer,
+    Kind,
+    Named,
+    Number,
+    Rows,
+    Table,
+    Text,
+    Texts,
+)
 from seatlook.io._views import CAMERA, RIG
 from seatlook.model.scene import MEASURES
 
@@ -12,6 +24,7 @@ _NAME = Text(required=True)
 KEYS: dict[str, Kind] = {
     "schema": Integer(low=1, high=1, required=True),
     "name": Text(),
+    "hem": Flag(default=False),
     "pattern": Table(
         {
             "file": Text(required=True),
@@ -60,7 +73,17 @@ KEYS: dict[str, Kind] = {
         ),
         required=True,
     ),
-    "hook": Rows(Table(dict.fromkeys(("name", "line", "wire", "stage"), _NAME))),
+    "hook": Rows(
+        Table(
+            {
+                **dict.fromkeys(("name", "line", "wire", "stage"), _NAME),
+                "pitch_mm": Number(above=0, high=1000, scale=MM),
+                "from_mm": Number(low=0, scale=MM, default=0.0),
+                "to_mm": Number(above=0, scale=MM),
+                "limit_n": Number(above=0),
+            }
+        )
+    ),
     "frame": Rows(
         Table(
             {

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from seatlook.io._scene_checks import line_length
 from seatlook.io._schema import known
 from seatlook.io._toml import Document, Key
 from seatlook.model import Foam, Frame, Hook, Limit, Pattern, Stage, ZoneBox
@@ -42,7 +43,34 @@ def make_hooks(
             known(document, (*key, "line"), hook["line"], lines, "a seam or PANEL/LINE")
         if foam is not None:
             known(document, (*key, "wire"), hook["wire"], foam.curves, "a curve of the foam")
-    return tuple(Hook(**hook) for hook in row["hook"])
+        _check_part(document, key, hook, pattern)
+    return tuple(
+        Hook(
+            name=hook["name"],
+            line=hook["line"],
+            wire=hook["wire"],
+            stage=hook["stage"],
+            pitch=hook["pitch_mm"],
+            start=hook["from_mm"] or 0.0,
+            end=hook["to_mm"],
+            limit=hook["limit_n"],
+        )
+        for hook in row["hook"]
+    )
+
+
+def _check_part(document: Document, key: Key, hook: Row, pattern: Pattern | None) -> None:
+    """Refuse a part of a line that is turned round or goes on beyond the line."""
+    start, end = hook["from_mm"], hook["to_mm"]
+    length = None if pattern is None else line_length(hook["line"], pattern)
+    if end is not None and start is not None and not start < end:
+        document.report((*key, "to_mm"), f"{1e3 * end:g}", f"above from_mm, {1e3 * start:g}")
+    if length is None:
+        return
+    for name, value in (("from_mm", start), ("to_mm", end)):
+        if value is not None and value > length + 5e-4:
+            expected = f"at most the length of {hook['line']!r}, {1e3 * length:.1f}"
+            document.report((*key, name), f"{1e3 * value:g}", expected)
 
 
 def make_frames(

@@ -30,6 +30,7 @@ from seatlook.model import (
     Fabric,
     Foam,
     FoamMaterial,
+    Hem,
     Material,
     Points,
     Solution,
@@ -43,8 +44,8 @@ FORMAT_VERSION = 1
 _TYPES: dict[str, type] = {
     t.__name__: t
     for t in (
-        Anchor, Appearance, Cover, Curve, Fabric, Foam, FoamMaterial, Material, Points, Solution,
-        Stage, Stitching,
+        Anchor, Appearance, Cover, Curve, Fabric, Foam, FoamMaterial, Hem, Material, Points,
+        Solution, Stage, Stitching,
     )
 }  # fmt: skip
 

@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.io._scene_checks import check_overlap, check_wires
+from seatlook.io._scene_checks import check_hem, check_overlap, check_wires
 from seatlook.io._scene_keys import AS_BUILT, KEYS
 from seatlook.io._scene_ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
 from seatlook.io._schema import known, read_table, shown
@@ -79,6 +79,7 @@ class _Reader:
         }
         check_wires(document, row, pattern, foam)
         check_overlap(document, pattern, parts["placement"])
+        check_hem(document, pattern, row["hem"])
         document.finish()
         curvature = row["wrinkle"]["curvature"]
         return Scene(
@@ -88,6 +89,7 @@ class _Reader:
             pattern=cast("Pattern", pattern),
             foam=cast("Foam", foam),
             boxes=boxes,
+            hem=row["hem"],
             element_size=row["mesh"]["element_size_mm"],
             smallest_notch=row["mesh"]["smallest_notch_mm"],
             seed=row["mesh"]["seed"],

@@ -1,7 +1,7 @@
 """The core types: frozen, checked when made, SI units inside."""
 
 from seatlook.model._check import FloatArray, IntArray
-from seatlook.model.cover import Anchor, Cover, Points, Solution, Stage, Stitching, WrinkleMap
+from seatlook.model.cover import Anchor, Cover, Hem, Points, Solution, Stage, Stitching, WrinkleMap
 from seatlook.model.light import LIGHTS, VIEWS, Camera, Light, Rig, bulb, direction, named_view, sun
 from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
@@ -22,6 +22,7 @@ __all__ = [
     "Foam",
     "FoamMaterial",
     "Frame",
+    "Hem",
     "Hook",
     "IntArray",
     "Light",

@@ -71,6 +71,8 @@ class Anchor:
     Parameters
     ----------
     points : Points; target : (s, 3) float64 [m]; length : (s,) float64 [m]
+    at : (s,) float64 [m], optional   place of every point along the line that is pulled
+    limit : float [N], optional       largest pull on one point that is allowed
     """
 
     name: str
@@ -79,10 +81,54 @@ class Anchor:
     target: FloatArray
     length: FloatArray
     stage: str
+    at: FloatArray | None = None
+    limit: float | None = None
 
     def __post_init__(self) -> None:
         floats(self, "target", len(self.points), 3)
         floats(self, "length", len(self.points))
+        if self.at is not None:
+            floats(self, "at", len(self.points))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hem:
+    """Seam allowances folded inward: the second layer below the seams, and the folds.
+
+    Parameters
+    ----------
+    bending : (m, 3, 3) float64 [N m]   what the allowance below a face adds to its bending matrix
+    density : (m,) float64 [kg/m2]      and to its mass
+    lift : (n,) float64 [m]             how much higher it keeps a vertex above the foam
+    near : (k, 2) int64                 rim edges of the coarser side of the seams
+    far : (p, 2) int64                  rim edges of the other side, each over against a near one,
+    row : (p,) int64                    which this is,
+    weight : (p,) float64               and the share of the near edge that they meet on
+    length : (k,) float64 [m]           of the near edge
+    stiffness : (k,) float64 [N]        moment per length and angle of the two folds in series
+    """
+
+    bending: FloatArray
+    density: FloatArray
+    lift: FloatArray
+    near: IntArray
+    far: IntArray
+    row: IntArray
+    weight: FloatArray
+    length: FloatArray
+    stiffness: FloatArray
+
+    def __post_init__(self) -> None:
+        k, n = len(self.near), len(self.lift)
+        floats(self, "bending", None, 3, 3)
+        floats(self, "density", len(self.bending))
+        floats(self, "lift", None)
+        ints(self, "near", None, 2, below=n)
+        ints(self, "far", None, 2, below=n)
+        ints(self, "row", len(self.far), below=k)
+        floats(self, "weight", len(self.far))
+        floats(self, "length", k)
+        floats(self, "stiffness", k)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,6 +174,7 @@ class Cover:
     zone_names: tuple[str, ...]
     stitchings: tuple[Stitching, ...] = ()
     anchors: tuple[Anchor, ...] = ()
+    hem: Hem | None = None
     stages: tuple[Stage, ...] = ()
     foam: Foam | None = None
     element_size: float
@@ -147,6 +194,12 @@ class Cover:
                 "Cover.materials",
                 got=f"{len(self.materials)}",
                 expected=f"one for each of {len(self.panel_names)} panels",
+            )
+        if self.hem is not None and (len(self.hem.density), len(self.hem.lift)) != (m, n):
+            raise InputError.single(
+                "Cover.hem",
+                got=f"{len(self.hem.density)} faces and {len(self.hem.lift)} vertices",
+                expected=f"{m} and {n}",
             )
 
     @property
@@ -171,7 +224,8 @@ class Solution:
     positions, velocities : (n, 3) float64 [m], [m/s]
     strain_top, strain_mid, strain_bottom : (m, 2, 2) float64 [1]
         Green strain in warp/weft axes on both faces and the mid surface.
-    multipliers : name of stitching or anchor -> (s, 3) [N], force on side a or on the cover
+    multipliers : name of stitching or anchor -> (s, 3) [N], the part that is not the spring's
+    forces : name of stitching or anchor -> (s, 3) [N], whole pull on side a or on the cover
     friction_anchor : (n, 3) float64 [m]   where each vertex last stuck to the foam; nan = free
     history : column -> (k,), one row per step: time, energy, residual, gap, iterations, ...
     figures : name -> final value, e.g. "seam_gap_max" [m], "residual" [1], "cpu_seconds"
@@ -186,6 +240,7 @@ class Solution:
     multipliers: MappingProxyType[str, FloatArray] = field(
         default_factory=lambda: MappingProxyType({})
     )
+    forces: MappingProxyType[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
     friction_anchor: FloatArray
     stage: str
     status: Status

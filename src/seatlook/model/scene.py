@@ -53,12 +53,19 @@ class Hook:
     line : name of a seam, or ``PANEL/LINE`` for an internal line
     wire : name of a curve of the foam
     stage : stage in which it is pulled in
+    pitch : float [m], optional     distance of hog rings; without it, pulled all along
+    start, end : float [m]          part of the line's length that is pulled; ``end`` None is all
+    limit : float [N], optional     largest pull allowed on one ring
     """
 
     name: str
     line: str
     wire: str
     stage: str
+    pitch: float | None = None
+    start: float = 0.0
+    end: float | None = None
+    limit: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,6 +111,7 @@ class Scene:
     digest : sha256 of the scene file and of every file it names
     materials : panel name -> Material
     placement : panel name -> Pose; a panel without one gets an automatic pose
+    hem : whether seam allowances are folded inward; if not, seams are free hinges
     element_size : float [m]; smallest_notch : float [m], below which reading closed cuts
     c_threshold : float [1/m]
     textures : name -> Appearance, or None for the panels' own materials
@@ -126,6 +134,7 @@ class Scene:
     )
     boxes: tuple[ZoneBox, ...] = ()
     limits: tuple[Limit, ...] = ()
+    hem: bool = False
     element_size: float
     smallest_notch: float = 0.005
     seed: int = 0

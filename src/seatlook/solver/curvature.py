@@ -54,6 +54,7 @@ def recover_curvature(
     area: FloatArray,
     stiffness: FloatArray,
     clamps: Clamps | None = None,
+    sewn: IntArray | None = None,
 ) -> Curvature:
     """Curvature by Green's theorem over each triangle: H = 1/A sum l sym(nu (x) slope).
 
@@ -63,6 +64,7 @@ def recover_curvature(
     Parameters
     ----------
     stiffness : (m, 3, 3) float64 [N m]   bending matrix of each triangle
+    sewn : (k,) int64, optional           free edges that pass on a moment: slope as recovered
     """
     held = np.zeros(len(edges.ends), dtype=bool)
     slopes = np.zeros((len(edges.ends), 3))
@@ -79,7 +81,10 @@ def recover_curvature(
         [by_warp @ given_warp, by_weft @ given_weft, by_warp @ given_weft + by_weft @ given_warp],
         axis=1,
     )
-    release = _release(edges, stiffness, edges.free & ~held)
+    loose = edges.free & ~held
+    if sewn is not None:
+        loose[sewn] = False
+    release = _release(edges, stiffness, loose)
     return Curvature(
         operator=csr_array(release @ operator),
         offset=release @ offset.reshape(-1, 3),

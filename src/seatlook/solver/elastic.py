@@ -9,11 +9,12 @@ import numpy.typing as npt
 from scipy.sparse import csc_array
 
 from seatlook.errors import InputError
-from seatlook.model import Fabric, FloatArray, IntArray
+from seatlook.model import Fabric, FloatArray, Hem, IntArray
 from seatlook.solver.bending import Bending
 from seatlook.solver.curvature import Clamps, recover_curvature
 from seatlook.solver.edgeslope import areas, edges_of, slope_rows
 from seatlook.solver.energy import Energy
+from seatlook.solver.hem import Folds
 from seatlook.solver.membrane import Membrane
 
 BoolArray = npt.NDArray[np.bool_]
@@ -30,6 +31,7 @@ class ElasticSheet:
     fabrics : one Fabric for each panel
     clamped : (n,) bool           a free edge between two clamped vertices keeps the direction
         across it that its triangle has in ``positions``, (n, 3) [m], the flat sheet if not given
+    hem : second layer and folds along the seams
 
     Raises
     ------
@@ -46,6 +48,7 @@ class ElasticSheet:
         *,
         clamped: BoolArray | None = None,
         positions: FloatArray | None = None,
+        hem: Hem | None = None,
     ) -> None:
         rest = np.array(rest, dtype=np.float64, order="C")
         faces = np.array(faces, dtype=np.int64, order="C")
@@ -62,11 +65,14 @@ class ElasticSheet:
         self._panel, self._fabrics = panel, tuple(fabrics)
         self.thickness = np.array([f.thickness for f in fabrics])[panel]
         density = np.array([f.density for f in fabrics])[panel]
+        stiffness = np.stack([f.bending_matrix for f in fabrics])[panel]
+        if hem is not None:
+            density, stiffness = density + hem.density, stiffness + hem.bending
         self.mass = np.bincount(
             faces.ravel(), np.repeat(density * self.area / 3.0, 3), minlength=len(rest)
         )
-        stiffness = np.stack([f.bending_matrix for f in fabrics])[panel]
         rows = slope_rows(rest, faces, self.edges)
+        self.folds = None if hem is None else Folds(hem, self.edges, rows)
         self._curvature = recover_curvature(
             len(rest),
             self.edges,
@@ -74,6 +80,7 @@ class ElasticSheet:
             self.area,
             stiffness,
             self._clamps(rest, clamped, positions),
+            None if self.folds is None else self.folds.edges,
         )
         self.membrane = Membrane(self.edges, self._curvature, self.area, panel, self._fabrics)
         self.bending = Bending(self.edges, self._curvature, self.area, stiffness)
@@ -81,7 +88,14 @@ class ElasticSheet:
     @property
     def energies(self) -> tuple[Energy, ...]:
         """The terms of the potential, membrane first."""
-        return (self.membrane, self.bending)
+        own: tuple[Energy, ...] = (self.membrane, self.bending)
+        return own if self.folds is None else (*own, self.folds)
+
+    def across(self) -> csc_array:
+        """Scalar matrix (n, n) [N/m] of what resists bending: sheet and folds."""
+        if self.folds is None:
+            return self.bending.stiffness()
+        return csc_array(self.bending.stiffness() + self.folds.matrix())
 
     def stiffness(self, include_bending: bool = False) -> csc_array:
         """Constant scalar matrix (n, n) [N/m] that stands for the sheet in a prefactor."""

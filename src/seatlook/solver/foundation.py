@@ -32,7 +32,8 @@ class Foundation:
         np.add.at(area, cover.faces, cover.rest_area[:, None] / 3.0)
         field = distance_field(foam.vertices, foam.faces)
         self.material, self.wavelength = foam.material, float(waves.min())
-        self.contact = FoamContact(field, half[panel], springs[panel], area)
+        below = half[panel] if cover.hem is None else half[panel] + cover.hem.lift
+        self.contact = FoamContact(field, below, springs[panel], area)
         self.friction = Friction(self.contact, foam.material.friction)
         self.settlement = Settlement(
             self.contact, cover, foam.material, waves[panel], ties.points("seam")

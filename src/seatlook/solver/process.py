@@ -48,22 +48,6 @@ class Record(NamedTuple):
     iterations: int
 
 
-class _OfPositions:
-    """An energy that knows positions only, in a state that goes on after them."""
-
-    def __init__(self, energy: Energy, count: int) -> None:
-        self._energy, self._count = energy, count
-
-    def value(self, x: FloatArray, gradient: FloatArray) -> float:
-        return self._energy.value(x[: self._count], gradient[: self._count])
-
-    def stiffness(self) -> csc_array | None:
-        return self._energy.stiffness()
-
-    def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
-        return self._energy.hessian(x[: self._count], definite=definite)
-
-
 class Process:
     """State and energies of a cover in the making.
 
@@ -71,13 +55,16 @@ class Process:
     ----------
     cover : what is made
     dt : float [s]
-    iterations : most L-BFGS iterations in one time step
+    iterations : most iterations in one time step
+    method : how each step is minimised, or integrated
     """
 
-    def __init__(self, cover: Cover, *, dt: float, iterations: int) -> None:
+    def __init__(
+        self, cover: Cover, *, dt: float, iterations: int, method: Method = "lbfgs"
+    ) -> None:
         self.cover, self.dt, self.iterations = cover, dt, iterations
         fabrics = [material.fabric for material in cover.materials]
-        self.sheet = ElasticSheet(cover.rest, cover.faces, cover.panel, fabrics)
+        self.sheet = ElasticSheet(cover.rest, cover.faces, cover.panel, fabrics, hem=cover.hem)
         self.panel = np.zeros(len(cover.rest), dtype=np.int64)
         self.panel[cover.faces] = cover.panel[:, None]
         tension = np.array([np.sqrt(f.warp.stiffness[0] * f.weft.stiffness[0]) for f in fabrics])
@@ -97,16 +84,17 @@ class Process:
             self.foundation = Foundation(cover, cover.foam, self.panel, self.ties)
         below = () if self.foundation is None else self.foundation.energies
         self._outer = Potential([self.gravity, self.ties, *below])
-        sheet = [_OfPositions(energy, n) for energy in self.sheet.energies]
+        sheet = [OfPositions(energy, n) for energy in self.sheet.energies]
         self._elastic = Potential(sheet)
-        self._static = Potential([*sheet, *self._outer.energies])
-        self._moving = Potential([*self._static.energies, self.inertia])
+        self._static = StatePotential([*sheet, *self._outer.energies], self.foundation)
+        self._moving = StatePotential([*self._static.energies, self.inertia], self.foundation)
         self.state = np.zeros((n + (0 if self.foundation is None else settled_rows(n)), 3))
         self.x = self.state[:n]
         np.copyto(self.x, cover.positions)
         self.v = np.zeros_like(self.x)
         self.time = 0.0
-        self._lbfgs = Lbfgs(self.state.shape)
+        self.method = method
+        self._minimiser = minimiser(method, self.state.shape)
         self._factor: Preconditioner | None = None
         self._taut, self._evaluations = _TAUT, 0
         self._work, self._start = np.zeros_like(self.state), np.zeros_like(self.x)
@@ -126,14 +114,16 @@ class Process:
             np.copyto(self.foundation.friction.anchor, start.friction_anchor)
 
     def step(self, step: Step, *, refactor: bool) -> Record:
-        """Advance by one backward-Euler step; ``refactor`` renews the matrix."""
+        """Advance by one time step; ``refactor`` renews what is made from the stiffness."""
         self.time = step.time
         self.ties.pull(self.x, step.before, step.progress)
         self._lag()
+        if isinstance(self.method, Explicit):
+            return self._integrate(self.method, refactor=refactor)
         np.multiply(self.v, _KEPT_VELOCITY * self.dt, out=self.inertia.free)
         self.inertia.free += self.x
         if refactor or self._factor is None:
-            self._factor = self._extended(Factor(self._matrix()))
+            self._factor = self._preconditioner(lambda: Factor(self._matrix()))
         limit = _STEP_TOLERANCE * self._force_scale()
         return self._descend(self._factor, limit, self.iterations)
 
@@ -151,7 +141,7 @@ class Process:
         self._lag()
         np.copyto(self.inertia.free, self.x)
         limit = max(_REST_TOLERANCE, 0.02 * record.residual) * self._force_scale()
-        record = self._descend(self._extended(self._split()), limit, iterations)
+        record = self._descend(self._preconditioner(self._split), limit, iterations)
         if self._evaluations > _BACKTRACKING * record.iterations:
             self._taut = min(5.0 * self._taut, 1.0)
         return record
@@ -191,10 +181,10 @@ class Process:
             forces[name] = -self._work[: len(self.x)].sum(axis=0)
         return forces
 
-    def _descend(self, factor: Preconditioner, limit: float, iterations: int) -> Record:
+    def _descend(self, factor: Preconditioner | None, limit: float, iterations: int) -> Record:
         """Minimise the moving potential until no vertex is out of balance by ``limit`` [N]."""
         np.copyto(self._start, self.x)
-        descent = self._lbfgs.minimise(
+        descent = self._minimiser.minimise(
             self._moving,
             self.state,
             factor,
@@ -213,8 +203,11 @@ class Process:
         if self.foundation is not None:
             self.foundation.lag(self.state)
 
-    def _extended(self, sheet: Preconditioner) -> Preconditioner:
-        return sheet if self.foundation is None else self.foundation.extend(sheet)
+    def _preconditioner(self, sheet: Callable[[], Preconditioner]) -> Preconditioner | None:
+        """Matrix for a method that wants one, of the positions and what lies below."""
+        if self.method != "lbfgs":
+            return None
+        return sheet() if self.foundation is None else self.foundation.extend(sheet())
 
     def _force_scale(self) -> float:
         """Mean over the vertices of the elastic force [N], or of the weight if that is more.
@@ -247,7 +240,7 @@ class Process:
         if self.foundation is not None:
             diagonal += self.foundation.contact.stiffness().diagonal()
         across = (
-            self.sheet.bending.stiffness()
+            self.sheet.across()
             + self._taut * self.sheet.stiffness()
             + diags_array(diagonal)
         )

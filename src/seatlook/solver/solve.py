@@ -157,6 +157,7 @@ class _Run:
             multipliers=MappingProxyType(
                 {t.name: ties.multiplier[t.rows].copy() for t in ties.ties}
             ),
+            forces=MappingProxyType(ties.forces(process.x)),
             friction_anchor=free if foundation is None else foundation.friction.anchor,
             stage=stage,
             status="not converged" if why else "converged",

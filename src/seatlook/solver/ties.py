@@ -140,6 +140,11 @@ class Ties:
         kernel.tie_gap(x, self.vertices, self.weights, self.target, self._gap)
         return np.asarray(-(self.multiplier + self.stiff[:, None] * self._gap))
 
+    def forces(self, x: FloatArray) -> dict[str, FloatArray]:
+        """Pull of every tie, (s, 3) [N], by its name."""
+        force = self.force(x)
+        return {tie.name: force[tie.rows].copy() for tie in self.ties}
+
     def stiffness(self) -> csc_array:
         """Scalar stiffness of all springs that pull."""
         w = self._weights
