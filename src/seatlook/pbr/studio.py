@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -42,14 +43,20 @@ class Studio:
     """One solved cover ready to be drawn, with everything that pictures share.
 
     Faces seen are kept per camera, shadows per camera and light, open sky per mesh: another
-    material costs only its shading, another light only its shadows.
+    material costs only its shading, another light only its shadows. With ``shading`` the normals
+    are those of another shape of the same cover; outlines and shadows stay.
     """
 
-    def __init__(self, solution: Solution, *, thread: Thread = TOP_STITCH) -> None:
+    def __init__(
+        self, solution: Solution, *, shading: Solution | None = None, thread: Thread = TOP_STITCH
+    ) -> None:
         offscreen_backend()
         self.solution = solution
         self.thread = thread
         self.surface: Surface = drawn_surface(solution)
+        if shading is not None:
+            normals = drawn_surface(shading).mesh.normals
+            self.surface = replace(self.surface, mesh=self.surface.mesh._replace(normals=normals))
         self._smooth = neighbour_mean(solution.cover.faces, len(solution.positions))
         self._bvh = bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
         self._cache: OrderedDict[Hashable, Any] = OrderedDict()

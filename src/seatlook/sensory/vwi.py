@@ -143,6 +143,33 @@ def region_visibility(
     return float(weighted_mean(visibility**observer.pooling, share) ** (1 / observer.pooling))
 
 
+def zone_visibility(
+    visibility: FloatArray,
+    zone: npt.NDArray[np.int64],
+    count: int,
+    *,
+    observer: Observer = OBSERVER,
+) -> FloatArray:
+    """VWI of every zone of the map D at once, (count,); nan for a zone without a pixel.
+
+    Parameters
+    ----------
+    visibility : (h, w) float64    ``VisibilityScore.map``
+    zone : (h, w) int64            number of the zone, -1 outside all of them
+
+    Examples
+    --------
+    >>> zone_visibility(np.array([[0.0, 2.0]]), np.array([[-1, 1]]), 2)
+    array([nan,  2.])
+    """
+    inside = zone >= 0
+    energy = visibility[inside] ** observer.pooling
+    total = np.bincount(zone[inside], energy, minlength=count)
+    pixels = np.bincount(zone[inside], minlength=count)
+    mean = total / np.where(pixels > 0, pixels, np.nan)
+    return np.asarray(mean ** (1 / observer.pooling))
+
+
 def _bands(
     test: FloatArray, reference: FloatArray, pixels_per_degree: float, observer: Observer
 ) -> tuple[list[FloatArray], list[float]]:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model import Appearance, FloatArray, Rig, Solution, sun
 from seatlook.pbr import Image, Studio
-from seatlook.sensory.vwi import score
-from seatlook.study.reference import waves
+from seatlook.sensory.vwi import score, zone_visibility
 from seatlook.study.view import View, luminance
 
 # Heights of the ladder [m]; what looks higher than the last is reported as "above".
@@ -35,11 +35,18 @@ class Ladder:
     height : float [m]            peak to valley of the field as solved
     heights : (k,) float64 [m]    rising from 0
     vwi : (k,) float64            0 at height 0
+    zones : the same of the part of the field in each zone in view
     """
 
     height: float
     heights: FloatArray
     vwi: FloatArray
+    zones: MappingProxyType[str, Ladder] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def top(self) -> float:
+        """Largest height [m] that can be read off."""
+        return float(self.heights[-1])
 
     def equivalent(self, vwi: float) -> float:
         """Height [m] on black leather that scores ``vwi``; inf above the ladder.
@@ -77,18 +84,26 @@ def amplitude_ladder(
     if not height > 0:
         raise InputError.single("wrinkles", got="no height", expected="a field to scale")
     rig = rig or reference_rig()
+    factors = rungs / height
+    names = view.solution.cover.zone_names
     smooth = luminance(_draw(view.reference_studio, view, black, rig))
-    values = [0.0]
-    for rung in rungs[1:]:
-        studio = Studio(amplified(view, rung / height))
+    values, zones = np.zeros(len(rungs)), np.zeros((len(rungs), len(names)))
+    for k, factor in enumerate(factors[1:], start=1):
+        studio = view.studio_of(amplified(view, float(factor)))
         found = score(
             luminance(_draw(studio, view, black, rig)),
             smooth,
             pixels_per_degree=view.camera.pixels_per_degree,
             mask=view.region.mask,
         )
-        values.append(found.vwi)
-    return Ladder(height=height, heights=rungs, vwi=np.array(values))
+        values[k] = found.vwi
+        zones[k] = zone_visibility(found.map, view.region.zone, len(names))
+    own = {names[k]: peak_to_valley(view, names[k]) for k in np.flatnonzero(~np.isnan(zones[-1]))}
+    ladders = {
+        name: Ladder(height=h, heights=factors * h, vwi=zones[:, names.index(name)])
+        for name, h in own.items()
+    }
+    return Ladder(height=height, heights=rungs, vwi=values, zones=MappingProxyType(ladders))
 
 
 def amplified(view: View, factor: float) -> Solution:
@@ -103,7 +118,7 @@ def peak_to_valley(view: View, zone: str | None = None) -> float:
     cover = view.solution.cover
     if zone is not None:
         shown = shown[cover.zone[shown] == cover.zone_names.index(zone)]
-    height = waves(view.solution, cutoff=view.cutoff)[cover.faces[shown]].ravel()
+    height = view.heights[cover.faces[shown]].ravel()
     weight = np.repeat(cover.rest_area[shown], 3)
     order = np.argsort(height)
     share = np.cumsum(weight[order]) / weight.sum()

@@ -6,7 +6,9 @@ and its silhouette; a texture shifted by one pixel would outscore any wrinkle.
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -14,12 +16,15 @@ from scipy.ndimage import distance_transform_edt
 
 from seatlook.errors import InputError
 from seatlook.mesh import vertex_normals
-from seatlook.model import Camera, Cover, FloatArray, Solution
+from seatlook.model import Camera, Cover, FloatArray, Foam, Solution
 from seatlook.pbr import Studio
-from seatlook.solver.distance import distance_field
+from seatlook.solver.distance import DistanceField, distance_field
 from seatlook.wrinkle import low_passed
 from seatlook.zones import FREE_EDGE
 
+# What a score compares with: the cover smoothed along the camera's rays; the cover as it is, shaded
+# with the normals of that; the surface that was designed.
+Mode = Literal["view-ray", "normals", "design"]
 # Waves up to this length [m] count as wrinkles; demo covers wrinkle on their foam at 63 mm.
 CUTOFF = 0.1
 # The foam's facets show up as waves of its element size: shorter ones than this many of the
@@ -30,7 +35,7 @@ _RESOLVED = 3.0
 _GRAZING = 0.2
 # Pixels beside a silhouette that are left out: the finest bands reach this far.
 _SILHOUETTE = 6
-_PASSES = 3
+_PASSES, _FAR_PASSES = 3, 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,26 +81,80 @@ def smooth_reference(solution: Solution, camera: Camera, *, cutoff: float = CUTO
     if not cutoff > 0:
         raise InputError.single("cutoff", got=cutoff, expected="a wavelength above 0 m")
     cover, x = solution.cover, np.array(solution.positions)
+    if cover.foam is None:
+        ray = _rays(camera, x)
+        off, normal = _off_smooth_shape(cover, x, cutoff)
+        step = off * _seen(-_dot(normal, ray))
+        return replace(solution, positions=x + step[:, None] * ray)
+    height, _ = field_of(cover.foam).at(x)
+    height = np.where(np.isfinite(height), height, 0.0)
+    wanted = height - _band(cover, height, cutoff)
+    return _moved(solution, cover.foam, camera, wanted, passes=_PASSES)
+
+
+def design_reference(solution: Solution, camera: Camera) -> Solution:
+    """Lay the cover on the foam as designed, half its thickness above it, along the camera's rays.
+
+    Unlike the smoothed shape it holds no sag and no standoff either: whatever the cover does
+    otherwise than drawn counts as visible.
+
+    Raises
+    ------
+    InputError
+        No foam, a camera inside the cover.
+    """
+    wanted = half_thickness(solution.cover)
+    return _moved(solution, foam_of(solution.cover), camera, wanted, passes=_FAR_PASSES)
+
+
+def foam_of(cover: Cover) -> Foam:
+    """Return the foam below a cover; InputError where there is none."""
+    if cover.foam is None:
+        raise InputError.single("foam", got="none", expected="the surface the cover was made for")
+    return cover.foam
+
+
+def half_thickness(cover: Cover) -> FloatArray:
+    """Height (n,) [m] at which the mid surface lies over the foam."""
+    half = np.zeros(len(cover.rest))
+    np.maximum.at(half, cover.faces.ravel(), np.repeat(cover.thickness / 2, 3))
+    return half
+
+
+def _moved(
+    solution: Solution, foam: Foam, camera: Camera, wanted: FloatArray, *, passes: int
+) -> Solution:
+    """Move vertices along their rays to the height (n,) over the foam that is wanted."""
+    x = np.array(solution.positions)
+    field, ray = field_of(foam), _rays(camera, x)
+    height, normal = field.at(x)
+    known = np.isfinite(height)
+    for _ in range(passes):
+        off = np.where(known & np.isfinite(height), height - wanted, 0.0)
+        x += (off * _seen(-_dot(normal, ray)))[:, None] * ray
+        height, normal = field.at(x)
+    return replace(solution, positions=x)
+
+
+def _rays(camera: Camera, x: FloatArray) -> FloatArray:
+    """Unit vectors (n, 3) from the camera to points."""
     ray = x - camera.position
     length = np.linalg.norm(ray, axis=1, keepdims=True)
     if not length.min() > 0:
         raise InputError.single("camera.position", got="on the cover", expected="away from it")
-    ray /= length
-    if cover.foam is None:
-        off, normal = _off_smooth_shape(cover, x, cutoff)
-        step = off * _seen(-_dot(normal, ray))
-        return replace(solution, positions=x + step[:, None] * ray)
-    field = distance_field(cover.foam.vertices, cover.foam.faces)
-    height, normal = field.at(x)
-    known = np.isfinite(height)
-    height = np.where(known, height, 0.0)
-    wanted = height - _band(cover, height, cutoff)
-    moved = np.array(x)
-    for _ in range(_PASSES):
-        moved += ((height - wanted) * _seen(-_dot(normal, ray)))[:, None] * ray
-        height, normal = field.at(moved)
-        height = np.where(known & np.isfinite(height), height, wanted)
-    return replace(solution, positions=moved)
+    return np.asarray(ray / length)
+
+
+_fields: OrderedDict[int, tuple[Foam, DistanceField]] = OrderedDict()
+
+
+def field_of(foam: Foam) -> DistanceField:
+    """Distance from a foam; those of the last two are kept, with their foams."""
+    if id(foam) not in _fields:
+        _fields[id(foam)] = foam, distance_field(foam.vertices, foam.faces)
+        if len(_fields) > 2:
+            _fields.popitem(last=False)
+    return _fields[id(foam)][1]
 
 
 def waves(solution: Solution, *, cutoff: float = CUTOFF) -> FloatArray:
@@ -103,8 +162,14 @@ def waves(solution: Solution, *, cutoff: float = CUTOFF) -> FloatArray:
     cover, x = solution.cover, np.array(solution.positions)
     if cover.foam is None:
         return _off_smooth_shape(cover, x, cutoff)[0]
-    height, _ = distance_field(cover.foam.vertices, cover.foam.faces).at(x)
+    height, _ = field_of(cover.foam).at(x)
     return _band(cover, np.where(np.isfinite(height), height, 0.0), cutoff)
+
+
+def standing_off(solution: Solution) -> FloatArray:
+    """Height (n,) [m] of every vertex over the designed surface; 0 where there is no foam below."""
+    height, _ = field_of(foam_of(solution.cover)).at(np.array(solution.positions))
+    return np.where(np.isfinite(height), height - half_thickness(solution.cover), 0.0)
 
 
 def _off_smooth_shape(cover: Cover, x: FloatArray, cutoff: float) -> tuple[FloatArray, FloatArray]:

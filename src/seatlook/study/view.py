@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -13,15 +14,31 @@ from seatlook.errors import InputError
 from seatlook.model import Appearance, Camera, FloatArray, Rig, Solution, WrinkleMap
 from seatlook.pbr import Image, Studio
 from seatlook.pbr.exposure import saturation_luminance
+from seatlook.pbr.studio import studio
 from seatlook.sensory.cross_check import Measures, dissimilarity, log_ratio
-from seatlook.sensory.vwi import VisibilityScore, region_visibility, score
-from seatlook.solver.distance import distance_field
-from seatlook.study.reference import CUTOFF, Region, region, smooth_reference
+from seatlook.sensory.vwi import VisibilityScore, region_visibility, score, zone_visibility
+from seatlook.study.reference import (
+    CUTOFF,
+    Mode,
+    Region,
+    design_reference,
+    field_of,
+    foam_of,
+    half_thickness,
+    region,
+    smooth_reference,
+    standing_off,
+    waves,
+)
 
 Looks = Appearance | Mapping[str, Appearance] | None
 NULL_LIMIT = 0.1
 # Luminance of linear sRGB (IEC 61966-2-1).
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+class ScoreRefusedError(InputError):
+    """A cover without wrinkles scores: test and reference do not lie on each other."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,16 +74,43 @@ class View:
         solution: Solution,
         camera: Camera,
         *,
+        mode: Mode = "view-ray",
         cutoff: float = CUTOFF,
         zones: tuple[str, ...] | None = None,
         quality: str = "standard",
     ) -> None:
-        """Smooth the reference; see :func:`smooth_reference` and :func:`region`."""
+        """Make the reference.
+
+        Parameters
+        ----------
+        mode : ``view-ray`` (the cover smoothed along the camera's rays), ``normals`` (shading
+            smoothed, shape and shadows as they are: a lower bound) or ``design`` (the surface
+            that was drawn)
+        cutoff : float [m]   see :func:`smooth_reference`; not used by ``design``
+        zones : see :func:`region`
+        """
         self.solution, self.camera = solution, camera
-        self.cutoff, self.quality = cutoff, quality
-        self.reference = smooth_reference(solution, camera, cutoff=cutoff)
-        self.test_studio, self.reference_studio = Studio(solution), Studio(self.reference)
+        self.mode, self.cutoff, self.quality = mode, cutoff, quality
+        self.reference = self._reference()
+        # The studio that pictures of this solution share.
+        self.test_studio, self.reference_studio = studio(solution), self.studio_of(self.reference)
         self.region: Region = region(self.test_studio, camera, zones=zones)
+
+    def _reference(self) -> Solution:
+        if self.mode == "design":
+            return design_reference(self.solution, self.camera)
+        return smooth_reference(self.solution, self.camera, cutoff=self.cutoff)
+
+    def studio_of(self, shape: Solution) -> Studio:
+        """Make a studio for another shape of the cover, as the mode asks."""
+        return Studio(self.solution, shading=shape) if self.mode == "normals" else Studio(shape)
+
+    @functools.cached_property
+    def heights(self) -> FloatArray:
+        """Height (n,) [m] of every vertex over the reference, along the normal."""
+        if self.mode == "design":
+            return standing_off(self.solution)
+        return waves(self.solution, cutoff=self.cutoff)
 
     def sight(self, looks: Looks, rig: Rig, *, indices: WrinkleMap | None = None) -> Sight:
         """Draw both covers and score the difference.
@@ -88,10 +132,8 @@ class View:
             ),
         )
         names = self.solution.cover.zone_names
-        zones = {
-            names[k]: region_visibility(found.map, mask=self.region.zone == k)
-            for k in np.unique(self.region.zone[mask])
-        }
+        values = zone_visibility(found.map, self.region.zone, len(names))
+        zones = {names[k]: float(values[k]) for k in np.flatnonzero(np.isfinite(values))}
         return Sight(
             score=found,
             zones=MappingProxyType(zones),
@@ -111,19 +153,25 @@ class View:
 
         Raises
         ------
+        ScoreRefusedError
+            A score of 0.1 or more: then pictures and references do not lie on each other, and no
+            score of this view may be believed.
         InputError
-            No foam, or a score of 0.1 or more: then pictures and references do not lie on each
-            other, and no score of this view may be believed.
+            No foam.
         """
-        null = View(on_foam(self.solution), self.camera, cutoff=self.cutoff, quality=self.quality)
-        found = null.vwi(looks, rig)
+        found = self._null.vwi(looks, rig)
         if not found < NULL_LIMIT:
-            raise InputError.single(
-                f"camera {self.camera.name}",
+            raise ScoreRefusedError.single(
+                f"score of view {self.camera.name} under {rig.name}",
                 got=f"VWI {found:.3g} of a cover without wrinkles",
                 expected=f"below {NULL_LIMIT:g}, or no score can be given",
             )
         return found
+
+    @functools.cached_property
+    def _null(self) -> View:
+        flat = on_foam(self.solution)
+        return View(flat, self.camera, mode=self.mode, cutoff=self.cutoff, quality=self.quality)
 
     def _draw(self, looks: Looks, rig: Rig) -> tuple[Image, Image]:
         """Draw the cover and its reference."""
@@ -159,11 +207,7 @@ def on_foam(solution: Solution) -> Solution:
         No foam.
     """
     cover = solution.cover
-    if cover.foam is None:
-        raise InputError.single("foam", got="none", expected="the surface the cover was made for")
-    field = distance_field(cover.foam.vertices, cover.foam.faces)
-    half = np.zeros(len(cover.rest))
-    np.maximum.at(half, cover.faces.ravel(), np.repeat(cover.thickness / 2, 3))
+    field, half = field_of(foam_of(cover)), half_thickness(cover)
     x = np.array(solution.positions)
     for _ in range(8):
         height, normal = field.at(x)
