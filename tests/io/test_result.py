@@ -34,7 +34,7 @@ def assert_equal(a, b, at="solution"):
 def test_round_trip_is_exact(tmp_path, status):
     a = solution(status)
     write_result(a, tmp_path / "r.npz")
-    assert_equal(a, read_result(tmp_path / "r.npz"))
+    assert_equal(a, read_result(str(tmp_path / "r.npz")))
 
 
 def test_cover_without_foam(tmp_path):

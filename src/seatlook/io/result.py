@@ -50,13 +50,13 @@ _TYPES: dict[str, type] = {
 }  # fmt: skip
 
 
-def write_result(solution: Solution, path: Path) -> None:
+def write_result(solution: Solution, path: Path | str) -> None:
     """Write a solution, its cover, materials and foam included; the same one, the same bytes.
 
     Examples
     --------
-    >>> write_result(solution, Path("out/result.npz"))          # doctest: +SKIP
-    >>> read_result(Path("out/result.npz")).status              # doctest: +SKIP
+    >>> write_result(solution, "out/result.npz")                # doctest: +SKIP
+    >>> read_result("out/result.npz").status                    # doctest: +SKIP
     'converged'
     """
     arrays: dict[str, Any] = {}
@@ -64,10 +64,10 @@ def write_result(solution: Solution, path: Path) -> None:
     meta = {"format": FORMAT, "format_version": FORMAT_VERSION, "solution": tree}
     buffer = io.BytesIO()
     np.savez_compressed(buffer, meta=np.array(json.dumps(meta)), **arrays)
-    write_bytes(path, buffer.getvalue())
+    write_bytes(Path(path), buffer.getvalue())
 
 
-def read_result(path: Path) -> Solution:
+def read_result(path: Path | str) -> Solution:
     """Read a solution back exactly, to the last bit.
 
     Raises
@@ -75,6 +75,7 @@ def read_result(path: Path) -> Solution:
     InputError
         When the file is absent, cut short, damaged, no result of seatlook, or of a newer version.
     """
+    path = Path(path)
     content = read_file(path)
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
