@@ -1,16 +1,19 @@
 """The command line: ``seatlook demo | check | evaluate | ...``."""
 
-from seatlook.cli import _demo, _machine, _run, _solve
+from seatlook.cli import _demo, _init, _machine, _run, _solve, _wrinkle
 from seatlook.cli._app import app, main, run
 
 __all__ = ["app", "main", "run"]
 
 app.command(_demo.demo)
 app.command(_demo.flatten)
+app.command(_init.init)
 app.command(_run.check)
 app.command(_run.evaluate)
 app.command(_solve.solve)
-app.command(_run.wrinkle)
+app.command(_making.timeline)
+app.command(_making.hooks)
+app.command(_wrinkle.wrinkle)
 app.command(_run.render)
 app.command(_machine.materials)
 app.command(_machine.doctor)

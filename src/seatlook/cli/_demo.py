@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from seatlook.cli._output import Json, progress, say, table
+from seatlook.cli._output import Json, progress, say, table, template
 from seatlook.cli._run import Out, Resume, Seed, evaluate_scene, load
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from jinja2 import Template
-
     from seatlook.design import Flattened
 
 # Covers are cut a little smaller than the foam, so that they lie taut.
@@ -158,7 +156,7 @@ def write_demo(
     io.write_obj(foam.vertices, foam.faces, out / "foam.obj")
     io.write_curves(foam.curves, out / "wires.toml")
     _write_pattern(flat, out)
-    scene = _template("demo_scene.toml.j2").render(
+    scene = template("demo_scene.toml.j2").render(
         material=material,
         insert=insert,
         element_size_mm=element_size_mm,
@@ -186,19 +184,6 @@ def _placement(flat: Flattened) -> str:
         f"translation_mm = {(1e3 * pose.translation).tolist()}"
         for name, pose in flat.placement.items()
     )
-
-
-def _template(name: str) -> Template:
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=False,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template(name)
 
 
 def _shares(option: str, words: tuple[str, ...]) -> dict[str, float]:

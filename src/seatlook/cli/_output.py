@@ -6,9 +6,13 @@ import json as json_module
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Annotated, Any, Protocol
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Protocol
 
 from cyclopts import Parameter
+
+if TYPE_CHECKING:
+    from jinja2 import Template
 
 Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, not a table.")]
 
@@ -36,6 +40,11 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[Any]], *, json: bool) ->
     for row in cells:
         line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         sys.stdout.write(line.rstrip() + "\n")
+
+
+def show_json(data: Any) -> None:
+    """Write data that is no single table to stdout."""
+    sys.stdout.write(json_module.dumps(data, indent=1) + "\n")
 
 
 def say(*lines: str) -> None:
@@ -74,6 +83,21 @@ def progress() -> Iterator[Say]:
             )
 
         yield show
+
+
+def template(name: str) -> Template:
+    """Load a text template of this folder; ``| toml`` spells a value as a TOML string."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=False,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["toml"] = json_module.dumps
+    return environment.get_template(name)
 
 
 def _text(cell: Any) -> str:

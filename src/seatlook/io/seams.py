@@ -6,7 +6,7 @@ stays true when a CAD system numbers its points anew.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -218,8 +218,12 @@ def _check_lengths(
         )
 
 
-def write_seams(pattern: Pattern, path: Path) -> None:
-    """Write the seams file of a pattern, with both lengths of each seam as checks."""
+def write_seams(pattern: Pattern, path: Path, *, notes: Mapping[str, str] | None = None) -> None:
+    """Write the seams file of a pattern, with both lengths of each seam as checks.
+
+    ``notes`` are comments on seams, by name.
+    """
+    notes = notes or {}
     blocks = ["schema = 1"]
     for edge in pattern.edges.values():
         points = 1e3 * pattern.edge_points(edge.name)
@@ -231,8 +235,9 @@ def write_seams(pattern: Pattern, path: Path) -> None:
         )
     for seam in pattern.seams:
         length_b = sum(pattern.edge_length(b) for b in seam.b)
+        note = f"# {notes[seam.name]}\n" if seam.name in notes else ""
         blocks.append(
-            "[[seam]]\n"
+            f"{note}[[seam]]\n"
             f"name = {quoted(seam.name)}\n"
             f"a = {quoted(seam.a)}\n"
             f"b = [{', '.join(map(quoted, seam.b))}]\n"
