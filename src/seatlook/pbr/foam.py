@@ -52,10 +52,13 @@ def corner_normals(x: FloatArray, faces: IntArray) -> FloatArray:
     return np.where(length > 0, n / np.maximum(length, 1e-30), (0.0, 0.0, 1.0))
 
 
-def with_foam(mesh: Mesh, foam: Foam, panel: int) -> Mesh:
-    """Mesh with the foam's faces behind its own; every corner gets a vertex."""
+def with_foam(mesh: Mesh, foam: Foam, panel: int, *, cover: int) -> Mesh:
+    """Mesh with the foam's faces behind its own; every corner gets a vertex.
+
+    The first ``cover`` vertices press on the foam, the seam allowance behind them does not.
+    """
     faces = np.array(foam.faces)
-    x = pressed(foam, mesh.vertices, mesh.normals)
+    x = pressed(foam, mesh.vertices[:cover], mesh.normals[:cover])
     n, k = len(mesh.vertices), faces.size
     return Mesh(
         np.vstack([mesh.vertices, x[faces.ravel()]]),

@@ -98,7 +98,7 @@ def drawn_surface(solution: Solution) -> Surface:
         mesh = _with_allowance(mesh, edges)
     k = len(mesh.faces)
     if cover.foam is not None:
-        mesh = with_foam(mesh, cover.foam, len(cover.panel_names))
+        mesh = with_foam(mesh, cover.foam, len(cover.panel_names), cover=n)
     return Surface(mesh, refined, n, m, k, np.array(cover.faces))
 
 
