@@ -105,7 +105,7 @@ def test_materials_as_data(capsys):
 def test_a_fault_of_seatlook_is_told_from_wrong_input(capsys, monkeypatch):
     from seatlook import io
 
-    monkeypatch.setattr(io, "load_scene", lambda path: 1 / 0, raising=False)
+    monkeypatch.setattr(io, "load_scene", lambda path, changes: 1 / 0, raising=False)
     assert run(["check", "a.toml"]) == 70
     assert "ZeroDivisionError" in capsys.readouterr().err
 

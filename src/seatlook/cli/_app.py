@@ -13,12 +13,15 @@ from collections.abc import Sequence
 from cyclopts import App, CycloptsError
 
 from seatlook import __version__
-from seatlook.cli._output import say
+from seatlook.cli._output import manner, say
 from seatlook.errors import SeatlookError
 
 _HELP = """Where a car-seat cover wrinkles, why, and whether anyone will see it.
 
-Start with: seatlook demo --out out/demo
+Start with: seatlook demo --out out/demo, or with files of your own: seatlook init
+
+Any command takes --quiet: no progress and no notes, only data and what went wrong. NO_COLOR is
+heeded. Exit codes: 0 good, 1 a limit is missed, 2 wrong input, 3 solver or renderer failed.
 """
 
 app = App(
@@ -38,8 +41,11 @@ def main() -> None:
 
 def run(tokens: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code; ``tokens`` default to the process's arguments."""
+    words = list(sys.argv[1:] if tokens is None else tokens)
+    manner.quiet = "--quiet" in words
+    words = [word for word in words if word != "--quiet"]
     try:
-        code = app(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+        code = app(words, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
         say(f"seatlook: {error}", "see: seatlook --help")
         return 2

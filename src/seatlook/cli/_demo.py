@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from seatlook.cli._output import Json, progress, say, table, template
+from seatlook.cli._output import Json, note, progress, table, template
 from seatlook.cli._run import Out, Resume, Seed, evaluate_scene, load
 from seatlook.errors import InputError
 
@@ -68,7 +68,7 @@ def demo(
         element_size_mm=element_size_mm,
         seed=seed or 0,
     )
-    say(f"scene: {out / 'scene.toml'}")
+    note(f"scene: {out / 'scene.toml'}")
     return evaluate_scene(load(out / "scene.toml"), out, resume=resume, json=json)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from seatlook.cli._output import Json, progress, say, table, template
+from seatlook.cli._output import Json, note, progress, table, template
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ def _foam(
             body = io.read_foam(path, material=material, unit="m", up=up)
         except InputError:
             raise error from None
-    say(f"{path}: read in metres, by its size")
+    note(f"{path}: read in metres, by its size")
     return body, "m"
 
 
@@ -206,7 +206,7 @@ def _tell(proposal: Proposal, hooks: Mapping[str, str], out: Path, *, json: bool
         [(s.name, s.a, " + ".join(s.b), _notes(proposal)[s.name]) for s in proposal.pattern.seams],
         json=json,
     )
-    say(
+    note(
         f"free edges: {', '.join(proposal.free) or 'none'}",
         f"hooks: {', '.join(f'{line} to {wire}' for wire, line in hooks.items()) or 'none'}",
         f"scene: {out / 'scene.toml'}; read {out / 'seams.toml'} over, then:",

@@ -6,11 +6,12 @@ import os
 import platform
 import sys
 from importlib.metadata import version
+from pathlib import Path
 
 from cyclopts import App
 
 from seatlook import __version__
-from seatlook.cli._output import Json, table
+from seatlook.cli._output import Json, note, say, table
 
 materials = App(name="materials", help="List the supplied materials, or show one.")
 
@@ -50,15 +51,16 @@ def show_material(name: str, /) -> None:
     sys.stdout.write(material_path(name).read_text(encoding="utf-8"))
 
 
-def doctor(*, json: Json = False) -> None:
-    """Look whether this machine can solve and draw; say what to install where it cannot.
+def doctor(*, json: Json = False) -> int:
+    """Look whether this machine can solve and draw; say what to do where it cannot.
+
+    Ends with 3 if nothing can be drawn.
 
     Example: seatlook doctor
     """
-    from seatlook.pbr.backend import offscreen_backend
-
-    backend = offscreen_backend()
+    advice: list[str] = []
     packages = ("numpy", "scipy", "numba", "vtk", "trimesh", "ezdxf", "shapely")
+    drawn, code = _drawing(advice)
     table(
         ("what", "value"),
         [
@@ -66,8 +68,60 @@ def doctor(*, json: Json = False) -> None:
             ("python", platform.python_version()),
             *((name, version(name)) for name in packages),
             ("cores", os.cpu_count()),
-            ("GL window", backend.window),
-            ("GL library", backend.library),
+            *_threads(advice),
+            *_cache(advice),
+            *drawn,
         ],
         json=json,
     )
+    say(*advice)
+    note(*([] if advice else ["nothing to do: this machine can solve and draw"]))
+    return code
+
+
+def _drawing(advice: list[str]) -> tuple[list[tuple[str, str | None]], int]:
+    """Which GL library draws, and 0 or 3."""
+    from seatlook.errors import NoOffscreenContext
+    from seatlook.pbr.backend import offscreen_backend
+
+    try:
+        backend = offscreen_backend()
+    except NoOffscreenContext as error:
+        advice.append(str(error))
+        return [("GL window", None), ("GL library", None)], error.exit_code
+    return [("GL window", backend.window), ("GL library", backend.library)], 0
+
+
+def _threads(advice: list[str]) -> list[tuple[str, int]]:
+    """Threads of the kernels and of linear algebra."""
+    import numba
+
+    names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+    said = [os.environ[name] for name in names if os.environ.get(name, "").isdigit()]
+    algebra = int(said[0]) if said else os.cpu_count() or 1
+    if algebra > (os.cpu_count() or 1):
+        advice.append(
+            f"more threads ({algebra}) than cores: set OMP_NUM_THREADS={os.cpu_count()} or less"
+        )
+    return [("kernel threads", int(numba.config.NUMBA_NUM_THREADS)), ("algebra threads", algebra)]
+
+
+def _cache(advice: list[str]) -> list[tuple[str, object]]:
+    """Where compiled kernels are kept, and whether they can be."""
+    import seatlook
+
+    named = os.environ.get("NUMBA_CACHE_DIR")
+    folder = Path(named) if named else Path(seatlook.__file__).parent
+    above = next(p for p in (folder, *folder.parents) if p.exists())
+    kept = os.access(above, os.W_OK)
+    if not kept:
+        advice.append(
+            f"{folder} cannot be written, so kernels are compiled again in every run (about a "
+            "minute): set NUMBA_CACHE_DIR to a folder of your own"
+        )
+    files = list(folder.rglob("*.nbi")) if folder.exists() else []
+    return [
+        ("kernel cache", str(folder)),
+        ("kernel cache kept", kept),
+        ("kernels kept", len(files)),
+    ]

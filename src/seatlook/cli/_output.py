@@ -6,6 +6,7 @@ import json as json_module
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Protocol
 
@@ -47,26 +48,50 @@ def show_json(data: Any) -> None:
     sys.stdout.write(json_module.dumps(data, indent=1) + "\n")
 
 
+@dataclass
+class Manner:
+    """How much is said; ``--quiet`` leaves data on stdout and what went wrong on stderr."""
+
+    quiet: bool = False
+
+
+manner = Manner()
+
+
+def note(*lines: str) -> None:
+    """Write lines to stderr that nobody misses; nothing with ``--quiet``."""
+    if not manner.quiet:
+        say(*lines)
+
+
 def say(*lines: str) -> None:
-    """Write lines to stderr."""
+    """Write lines to stderr that must be read."""
     for line in lines:
         sys.stderr.write(line.rstrip() + "\n")
 
 
 @contextmanager
 def progress() -> Iterator[Say]:
-    """Show a bar on stderr while the block runs; nothing where nobody watches."""
+    """Show a bar with the time left on stderr; nothing where nobody watches or with ``--quiet``."""
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     console = Console(stderr=True)
     with Progress(
         TextColumn("{task.description}"),
         BarColumn(bar_width=24),
         TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
         TextColumn("{task.fields[figures]}"),
         console=console,
-        disable=not console.is_terminal,
+        disable=manner.quiet or not console.is_terminal,
         transient=True,
     ) as bar:
         task = bar.add_task("", total=None, figures="")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from seatlook.cli._output import Json, progress, say, table
+from seatlook.cli._output import Json, note, progress, say, table
 from seatlook.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -33,6 +33,15 @@ Resume = Annotated[
     bool,
     Parameter(negative=(), help="Take the result in the folder if it is of this very scene."),
 ]
+DryRun = Annotated[bool, Parameter(negative=(), help="List what would be made, and make nothing.")]
+Changes = Annotated[
+    tuple[str, ...],
+    Parameter(
+        name="--set",
+        negative=(),
+        help="KEY=VALUE over the scene's, such as mesh.seed=3; may be given more than once.",
+    ),
+]
 Names = Annotated[tuple[str, ...], Parameter(negative=())]
 
 
@@ -42,6 +51,7 @@ def check(
     *,
     seed: Seed = None,
     element_size_mm: ElementSize = None,
+    changes: Changes = (),
     json: Json = False,
 ) -> None:
     """Read a scene with all its files, mesh it, and say what would be solved; solve nothing.
@@ -52,7 +62,7 @@ def check(
     from seatlook.assembly.ease import seam_ease
     from seatlook.solver.contact import foam_wavelength
 
-    read = load(scene, seed, element_size_mm)
+    read = load(scene, seed, element_size_mm, changes)
     cover = assemble(read)
     wave = min(foam_wavelength(m.fabric, read.foam.material) for m in cover.materials)
     seams = [_seam_row(seam_ease(read.pattern, seam)) for seam in read.pattern.seams]
@@ -98,7 +108,9 @@ def evaluate(
     out: Out,
     seed: Seed = None,
     element_size_mm: ElementSize = None,
+    changes: Changes = (),
     resume: Resume = False,
+    dry_run: DryRun = False,
     json: Json = False,
 ) -> int:
     """Solve a scene, judge its wrinkles, draw it, and write the gallery page.
@@ -108,7 +120,27 @@ def evaluate(
 
     Example: seatlook evaluate seat.toml --out out/seat
     """
-    return evaluate_scene(load(scene, seed, element_size_mm), out, resume=resume, json=json)
+    read = load(scene, seed, element_size_mm, changes)
+    if dry_run:
+        return _list_cells(read, out, json=json)
+    return evaluate_scene(read, out, resume=resume, json=json)
+
+
+def _list_cells(scene: Scene, out: Path, *, json: bool) -> int:
+    """Print what evaluating a scene would draw; the same names as when it does."""
+    from seatlook.evaluation import picture_path
+    from seatlook.pbr import ev100
+
+    table(
+        ("texture", "rig", "ev100", "image"),
+        [
+            (texture, rig.name, ev100(rig), str(out / picture_path(texture, rig.name)))
+            for rig in scene.rigs
+            for texture in scene.textures
+        ],
+        json=json,
+    )
+    return 0
 
 
 def evaluate_scene(scene: Scene, out: Path, *, resume: bool, json: bool) -> int:
@@ -119,39 +151,9 @@ def evaluate_scene(scene: Scene, out: Path, *, resume: bool, json: bool) -> int:
     with progress() as show:
         evaluation = run_chain(scene, out, resume=resume, progress=show)
     page = write_report(evaluation)
-    _print_zones(evaluation.zones, json=json)
-    say(f"gallery: {page}")
+    print_zones(evaluation.zones, json=json)
+    note(f"gallery: {page}")
     return _exit_code(evaluation)
-
-
-def wrinkle(
-    scene: SceneFile,
-    result: ResultFile,
-    /,
-    *,
-    export: Annotated[tuple[Path, ...], Parameter(negative=())] = (),
-    json: Json = False,
-) -> None:
-    """Print the wrinkle indices of a result, zone by zone; nothing is solved.
-
-    Example: seatlook wrinkle seat.toml seat.npz --export seat.vtp
-
-    Parameters
-    ----------
-    export
-        File with strains and indices per element for other programs: .vtp, .csv or .glb. May be
-        given more than once.
-    """
-    from seatlook import io
-    from seatlook.evaluation import wrinkle_map
-    from seatlook.wrinkle import zone_table
-
-    read = load(scene)
-    solution = _result(read, result)
-    indices = wrinkle_map(read, solution)
-    for path in export:
-        io.export(solution, indices, path)
-    _print_zones(zone_table(solution, indices), json=json)
 
 
 def render(
@@ -192,18 +194,23 @@ def render(
         textures=MappingProxyType({name: read.textures[name] for name in looks}),
     )
     camera = cameras[_chosen("--view", (view,) if view else (), cameras)[0]]
-    solution = _result(read, result)
+    solution = result_of(read, result)
     with progress() as show:
         draw_pictures(chosen, solution, camera, out, show)
         if maps:
             draw_maps(solution, wrinkle_map(read, solution), camera, out, show)
 
 
-def load(path: Path, seed: int | None = None, element_size_mm: float | None = None) -> Scene:
+def load(
+    path: Path,
+    seed: int | None = None,
+    element_size_mm: float | None = None,
+    changes: tuple[str, ...] = (),
+) -> Scene:
     """Read a scene, with what the command line overrides."""
     from seatlook import io
 
-    scene: Scene = io.load_scene(path)
+    scene: Scene = io.load_scene(path, changes=changes)
     return replace(
         scene,
         seed=scene.seed if seed is None else seed,
@@ -211,7 +218,7 @@ def load(path: Path, seed: int | None = None, element_size_mm: float | None = No
     )
 
 
-def _result(scene: Scene, path: Path) -> Solution:
+def result_of(scene: Scene, path: Path) -> Solution:
     """Read a result; say so if it is not of this scene as it now is."""
     from seatlook import io
 
@@ -235,7 +242,7 @@ def _chosen(option: str, names: tuple[str, ...], known: Iterable[str]) -> tuple[
     return names or known
 
 
-def _print_zones(zones: tuple[ZoneRow, ...], *, json: bool) -> None:
+def print_zones(zones: tuple[ZoneRow, ...], *, json: bool) -> None:
     table([f.name for f in fields(zones[0])], [astuple(row) for row in zones], json=json)
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from seatlook.cli._output import Json, Say, progress, say, table
-from seatlook.cli._run import ElementSize, SceneFile, Seed, exit_code_of, load
+from seatlook.cli._output import Json, Say, note, progress, table
+from seatlook.cli._run import Changes, ElementSize, SceneFile, Seed, exit_code_of, load
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ def solve(
     out: Annotated[Path, Parameter(help="Result file to write (.npz).")],
     seed: Seed = None,
     element_size_mm: ElementSize = None,
+    changes: Changes = (),
     stages: Annotated[bool, Parameter(negative=())] = False,
     again_from: Annotated[str | None, Parameter(name="--from")] = None,
     resume: Annotated[bool, Parameter(negative=())] = False,
@@ -54,7 +55,7 @@ def solve(
         raise InputError.single("--out", got=out.name, expected="a name that ends in .npz")
     if again_from is not None and resume:
         raise InputError.single("--from", got="--resume as well", expected="one of them")
-    cover = assemble(load(scene, seed, element_size_mm))
+    cover = assemble(load(scene, seed, element_size_mm, changes))
     with progress() as show:
         if stages or resume or again_from is not None:
             solution = _in_stages(cover, out.with_suffix(".stages"), again_from, resume, show)
@@ -84,11 +85,11 @@ def _in_stages(
     ) -> None:
         if stage not in seen:
             seen.append(stage)
-            say(f"stage: {stage}")
+            note(f"stage: {stage}")
         show(
             "solve", stage=stage, step=step, steps=steps, energy=energy, residual=residual, gap=gap
         )
 
     solution = solve_in_stages(cover, folder, again_from=again_from, resume=resume, progress=tell)
-    say(f"stages: {folder}")
+    note(f"stages: {folder}")
     return solution

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -11,6 +12,7 @@ from typing import Any, cast
 import numpy as np
 
 from seatlook.errors import InputError
+from seatlook.io._changes import change
 from seatlook.io._scene_checks import check_hem, check_overlap, check_wires
 from seatlook.io._scene_keys import AS_BUILT, KEYS
 from seatlook.io._scene_ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
@@ -40,8 +42,13 @@ _AXES = {
 }
 
 
-def load_scene(path: Path | str) -> Scene:
+def load_scene(path: Path | str, *, changes: Iterable[str] = ()) -> Scene:
     """Read a scene and every file it names; paths in it are seen from its own folder.
+
+    Parameters
+    ----------
+    changes : values set over those of the file, such as ``"mesh.seed=3"`` or
+        ``"rig.sun.light.0.elevation_deg=20"``
 
     Raises
     ------
@@ -50,6 +57,7 @@ def load_scene(path: Path | str) -> Scene:
         are absent or unreadable, names that do not exist. Each carries its file and line.
     """
     document = read_document(Path(path))
+    change(document, changes)
     return _Reader(document, read_table(document, KEYS)).scene()
 
 
