@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol
 
-import numpy as np
-
 from seatlook import io, pbr
 from seatlook.assembly import assemble
 from seatlook.errors import InputError
-from seatlook.files import replacing
-from seatlook.model import Camera, Cover, FloatArray, Limit, Scene, Solution, WrinkleMap
+from seatlook.model import Camera, FloatArray, Limit, Scene, Solution, WrinkleMap
 from seatlook.solver import solve
 from seatlook.solver.standoff import standoff
-from seatlook.wrinkle import ZoneRow, surface_strains, wrinkle_indices, zone_table
+from seatlook.wrinkle import (
+    Surface,
+    ZoneRow,
+    map_top,
+    surface_of,
+    surface_strains,
+    thresholds,
+    w2_net,
+    wrinkle_indices,
+    zone_table,
+)
 
 if TYPE_CHECKING:
     from seatlook.pbr import Picture
@@ -104,8 +110,8 @@ def evaluate(
         solution = solve(cover, progress=lambda **figures: say("solve", **figures))
         io.write_result(solution, out / RESULT)
     indices = wrinkle_map(scene, solution)
-    zones = zone_table(solution, indices)
-    _write_zones(zones, out / "zones.csv")
+    zones = zone_table(solution, indices, w2_net(surface(scene, solution, indices)))
+    write_zones(zones, out / "zones.csv")
     off = standoff(solution)
     camera = scene.cameras[0]
     return Evaluation(
@@ -132,8 +138,15 @@ def wrinkle_map(scene: Scene, solution: Solution) -> WrinkleMap:
     return wrinkle_indices(
         *surface_strains(solution),
         solution.cover.thickness,
-        _thresholds(scene, solution.cover),
+        thresholds(solution.cover, scene.curvature, scene.c_threshold),
         curvature=scene.curvature,
+    )
+
+
+def surface(scene: Scene, solution: Solution, indices: WrinkleMap) -> Surface:
+    """Collect what the measures beside the paper's look at."""
+    return surface_of(
+        solution, indices, thresholds(solution.cover, scene.curvature, scene.c_threshold)
     )
 
 
@@ -152,11 +165,19 @@ def draw_pictures(
 
 
 def draw_maps(
-    solution: Solution, indices: WrinkleMap, camera: Camera, out: Path, say: Progress
+    solution: Solution,
+    indices: WrinkleMap,
+    camera: Camera,
+    out: Path,
+    say: Progress,
+    *,
+    top: float | None = None,
 ) -> MappingProxyType[str, tuple[str, Picture]]:
-    """Draw the four maps from one camera; the causes share the range of W2 they add up to."""
-    # Eight in a thousand faces may lie above: a single pinched triangle must not wash out a map.
-    top = max(1.0, float(np.quantile(indices.w2, 0.992)))
+    """Draw the four maps from one camera; the causes share the range of W2 they add up to.
+
+    ``top`` is the upper end of that range, to be given where several covers are to share it.
+    """
+    top = top or map_top(indices)
     maps = {}
     for name, title in MAPS.items():
         say("map", name=name)
@@ -217,12 +238,6 @@ def _earlier_result(scene: Scene, out: Path) -> Solution | None:
     return solution if same and solution.status == "converged" else None
 
 
-def _thresholds(scene: Scene, cover: Cover) -> np.ndarray:
-    """C_threshold per face, (m,) [1/m]: the material's own, else the scene's."""
-    own = [m.c_threshold or scene.c_threshold for m in cover.materials]
-    return np.array(own)[cover.panel]
-
-
 def _judge(limit: Limit, scene: Scene, zones: tuple[ZoneRow, ...]) -> Verdict:
     """Compare a limit with the worst of the zones it names (a zone, or a visibility class)."""
     classes = {box.name: box.visibility for box in scene.boxes}
@@ -237,12 +252,9 @@ def _judge(limit: Limit, scene: Scene, zones: tuple[ZoneRow, ...]) -> Verdict:
     return Verdict(limit=limit, value=max(getattr(r, limit.measure) for r in rows))
 
 
-def _write_zones(zones: tuple[ZoneRow, ...], path: Path) -> None:
+def write_zones(zones: tuple[ZoneRow, ...], path: Path) -> None:
     """Write the zone table as CSV, one row per zone."""
-    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, fieldnames=list(asdict(zones[0])))
-        table.writeheader()
-        table.writerows(asdict(row) for row in zones)
+    io.write_table(path, list(asdict(zones[0])), [tuple(asdict(row).values()) for row in zones])
 
 
 def _slug(name: str) -> str:

@@ -99,6 +99,32 @@ def logarithmic_strain(green: FloatArray) -> FloatArray:
     return np.asarray(tensor + (0.5 * (top + low))[:, None, None] * np.eye(2))
 
 
+def green_of_logarithmic(logarithmic: FloatArray) -> FloatArray:
+    """Green strain ``(exp(2 e) - 1) / 2`` of the same stretch, in the same axes.
+
+    Parameters
+    ----------
+    logarithmic : (m, 2, 2) float64
+
+    Returns
+    -------
+    (m, 2, 2) float64
+
+    Examples
+    --------
+    >>> green_of_logarithmic(np.array([[[0.09531018, 0.0], [0.0, 0.0]]]))[0, 0, 0].round(6).item()
+    0.105
+    """
+    major, minor = principal_values(logarithmic)
+    top, low = 0.5 * np.expm1(2.0 * major), 0.5 * np.expm1(2.0 * minor)
+    gap = major - minor
+    # The slope of the function is the quotient's limit for equal values.
+    slope = np.where(gap > 1e-8, (top - low) / np.maximum(gap, 1e-8), np.exp(2.0 * major))
+    middle = 0.5 * (major + minor)
+    tensor = slope[:, None, None] * (logarithmic - middle[:, None, None] * np.eye(2))
+    return np.asarray(tensor + (0.5 * (top + low))[:, None, None] * np.eye(2))
+
+
 def major_direction(tensor: FloatArray) -> FloatArray:
     """Angle (m,) [rad] in (-pi/2, pi/2] from the first axis to the major principal direction.
 

@@ -32,6 +32,7 @@ _PUBLIC: dict[str, str] = {
     "write_result": "result",
     "write_seams": "seams",
     "write_surface": "surface",
+    "write_table": "table",
 }
 
 __all__ = list(_PUBLIC)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from seatlook.errors import InputError
 from seatlook.io._schema import shown
+from seatlook.io.dynain import write_dynain
 from seatlook.io.face_csv import write_csv
 from seatlook.io.glb import write_glb
 from seatlook.io.vtp import write_vtp
@@ -17,6 +18,8 @@ WRITERS: dict[str, Callable[[Solution, WrinkleMap, Path], None]] = {
     ".vtp": write_vtp,
     ".csv": write_csv,
     ".glb": write_glb,
+    # A dynain file has no place for indices; its reader computes them from the strains.
+    ".k": lambda solution, indices, path: write_dynain(solution, path),
 }
 
 

@@ -68,6 +68,7 @@ _FABRIC: dict[str, Kind] = {
     "bending_twist_n_m": Number(above=0, high=1, required=True),
     "bending_poisson": Number(low=-2, high=2, required=True),
     "c_threshold_per_mm": Number(above=0, scale=1 / MM),
+    "first_wrinkle_radius_mm": Number(above=0, scale=MM),
 }
 _APPEARANCE: dict[str, Kind] = {
     "albedo": _Colour(required=True),
@@ -148,6 +149,11 @@ def read_material(name_or_path: str | Path) -> Material:
     document.finish()
     fabric, look = row["fabric"], row["appearance"]
     c_threshold = fabric.pop("c_threshold_per_mm")
+    radius = fabric.pop("first_wrinkle_radius_mm")
+    if c_threshold is not None and radius is not None:
+        document.report(
+            ("fabric", "first_wrinkle_radius_mm"), "c_threshold_per_mm as well", "one of them"
+        )
     with document.blame(("fabric",)):
         made = Fabric(**{_without_unit(k): v for k, v in fabric.items()})
     with document.blame(("appearance",)):
@@ -158,6 +164,7 @@ def read_material(name_or_path: str | Path) -> Material:
         fabric=made,
         appearance=seen,
         c_threshold=c_threshold,
+        first_wrinkle_radius=radius,
         source=_given(row["source"]),
     )
 

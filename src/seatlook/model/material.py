@@ -123,6 +123,8 @@ class Appearance:
     coat_roughness : float in [0.08, 1]
     anisotropy : float in [-1, 1]         highlight stretched along (+) or across (-) the warp
     texture : relief of the grain; scale is the size of one cell [m], depth its height [m]
+    perforation_pitch, perforation_diameter : float [m]
+        punched holes in staggered rows along the warp; diameter 0 for none
     """
 
     albedo: FloatArray
@@ -137,6 +139,8 @@ class Appearance:
     texture: Texture = "none"
     texture_scale: float = 0.001
     texture_depth: float = 0.0
+    perforation_pitch: float = 0.006
+    perforation_diameter: float = 0.0
 
     def __post_init__(self) -> None:
         floats(self, "albedo", 3)
@@ -148,8 +152,9 @@ class Appearance:
         in_range(self, "coat_roughness", 0.08, 1.0)
         in_range(self, "sheen_roughness", 0.4, 1.0)
         in_range(self, "anisotropy", -1.0, 1.0)
-        positive(self, "texture_scale")
+        positive(self, "texture_scale", "perforation_pitch")
         in_range(self, "texture_depth", 0.0, 0.01)
+        in_range(self, "perforation_diameter", 0.0, 0.8 * self.perforation_pitch)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,6 +164,8 @@ class Material:
     Parameters
     ----------
     c_threshold : float [1/m]   curvature at which a wrinkle counts; None takes the scene's
+    first_wrinkle_radius : float [m]   radius to which the material is bent, visible side inwards,
+        when its first wrinkle shows (half pipe, as in VDA 230-205); another way to say c_threshold
     source : key -> where the number comes from, or "judgement"
     """
 
@@ -166,6 +173,7 @@ class Material:
     fabric: Fabric
     appearance: Appearance
     c_threshold: float | None = None
+    first_wrinkle_radius: float | None = None
     source: MappingProxyType[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
 

@@ -17,6 +17,7 @@ __all__ = [
     "lux_at_seat",
     "offscreen_backend",
     "render",
+    "render_checker",
     "render_map",
 ]
 
@@ -29,6 +30,7 @@ _PUBLIC: dict[str, str] = {
     "lux_at_seat": "seatlook.pbr.rig",
     "offscreen_backend": "seatlook.pbr.backend",
     "render": "seatlook.pbr.studio",
+    "render_checker": "seatlook.pbr.checker",
     "render_map": "seatlook.pbr.maps",
 }
 

@@ -13,9 +13,9 @@ from seatlook.model import Camera, FloatArray, Solution
 from seatlook.pbr.exposure import srgb_encode
 from seatlook.pbr.kernels import surface as kernel
 from seatlook.pbr.picture import Picture
-from seatlook.pbr.studio import eye_of, studio
+from seatlook.pbr.studio import Studio, eye_of, studio
 
-_FACTOR = 2
+FACTOR = 2  # samples per pixel and axis
 _PAPER, _INK, _BARE = 250, (30, 30, 30), 205
 _SEQUENTIAL = ("viridis", "cividis", "magma")
 COLORMAPS = ("diverging", *_SEQUENTIAL)
@@ -63,20 +63,16 @@ def render_map(
         colormap = "diverging" if inside else "viridis"
     low, high = _range(values, value_range, colormap)
     stage = studio(solution)
-    ids = stage.faces(camera, _FACTOR)
+    ids = stage.faces(camera, FACTOR)
     corner = _corner_values(values, solution, smooth=smooth)
-    value, cosine = _sampled(stage.surface.mesh, ids, camera, corner, stage.surface.faces)
-    table = _table(colormap)
+    value, cosine = sampled(stage, ids, camera, corner)
+    table = colour_table(colormap)
     position = np.clip((value - low) / (high - low), 0.0, 1.0) * (len(table) - 1)
     flat = table[np.rint(np.nan_to_num(position)).astype(np.int64)]
     flat[np.isnan(value)] = (_BARE / 255) ** 2.2
-    colour = flat * (0.62 + 0.38 * cosine[..., None])
-    colour[ids < 0] = (_PAPER / 255) ** 2.2
-    width, height = camera.size
-    mean = colour.reshape(height, _FACTOR, width, _FACTOR, 3).mean(axis=(1, 3))
-    pixels = np.rint(255 * srgb_encode(np.clip(mean, 0, 1))).astype(np.uint8)
+    pixels = shaded(flat, ids, cosine)
     return Picture(
-        pixels=_with_bar(pixels, table, (low, high), title, unit), value_range=(low, high)
+        pixels=with_bar(pixels, table, (low, high), title, unit), value_range=(low, high)
     )
 
 
@@ -114,21 +110,45 @@ def _corner_values(values: FloatArray, solution: Solution, *, smooth: bool) -> F
         return np.asarray((total / weight)[faces])
 
 
-def _sampled(
-    mesh: kernel.Mesh,
-    ids: npt.NDArray[np.int32],
-    camera: Camera,
-    corner: FloatArray,
-    cover_faces: int,
+def sampled(
+    stage: Studio, ids: npt.NDArray[np.int32], camera: Camera, corner: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Value at each sample (nan off the cover) and cosine of its normal to the view."""
+    """Value at each sample (nan off the cover) and cosine of its normal to the view.
+
+    ``corner`` (m, 3) belongs to the corners of the solver's faces.
+    """
     value = np.full(ids.shape, np.nan)
     cosine = np.ones(ids.shape)
-    kernel.paint(mesh, eye_of(camera, _FACTOR), ids, corner, cover_faces, value, cosine)
+    mesh, count = stage.surface.mesh, stage.surface.faces
+    kernel.paint(mesh, eye_of(camera, FACTOR), ids, corner, count, value, cosine)
     return value, cosine
 
 
-def _table(colormap: str) -> FloatArray:
+def shaded(
+    colour: FloatArray, ids: npt.NDArray[np.int32], cosine: FloatArray
+) -> npt.NDArray[np.uint8]:
+    """Pixels (h, w, 3) of linear colours per sample, darker where the surface turns away."""
+    light = colour * (0.62 + 0.38 * cosine[..., None])
+    light[ids < 0] = (_PAPER / 255) ** 2.2
+    height, width = (size // FACTOR for size in ids.shape)
+    mean = light.reshape(height, FACTOR, width, FACTOR, 3).mean(axis=(1, 3))
+    return np.rint(255 * srgb_encode(np.clip(mean, 0, 1))).astype(np.uint8)
+
+
+def titled(pixels: npt.NDArray[np.uint8], title: str) -> Pillow.Image:
+    """Write the title at the top left."""
+    picture = Pillow.fromarray(pixels)
+    size = _letters(pixels.shape[0])
+    draw = ImageDraw.Draw(picture)
+    draw.text((size, size // 2), title, fill=_INK, font=ImageFont.load_default(size))
+    return picture
+
+
+def _letters(height: int) -> int:
+    return max(9, height // 36)
+
+
+def colour_table(colormap: str) -> FloatArray:
     """Colours (256, 3) in linear sRGB, from low to high."""
     if colormap != "diverging":
         srgb = matplotlib.colormaps[colormap](np.linspace(0, 1, 256))[:, :3]
@@ -162,7 +182,7 @@ def _diverging(x: FloatArray) -> FloatArray:
     return np.asarray(np.clip(lms @ to_rgb.T, 0.0, 1.0))
 
 
-def _with_bar(
+def with_bar(
     pixels: npt.NDArray[np.uint8],
     table: FloatArray,
     value_range: tuple[float, float],
@@ -171,11 +191,10 @@ def _with_bar(
 ) -> npt.NDArray[np.uint8]:
     """Title at the top left, colour bar with five ticks along the right."""
     height, width = pixels.shape[:2]
-    picture = Pillow.fromarray(pixels)
+    picture = titled(pixels, title)
     draw = ImageDraw.Draw(picture)
-    size = max(9, height // 36)
+    size = _letters(height)
     font = ImageFont.load_default(size)
-    draw.text((size, size // 2), title, fill=_INK, font=font)
     top, bottom = height // 5, height - height // 5
     left = width - 6 * size
     draw.rectangle((left - size, top - 2 * size, width, bottom + size), fill=(_PAPER,) * 3)

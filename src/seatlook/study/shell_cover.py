@@ -3,84 +3,103 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.mesh import edge_lengths, face_vectors
+from seatlook.mesh import edge_lengths, face_normals, face_vectors
 from seatlook.model import Cover, FloatArray, IntArray, Material, Shells, ShellState, Solution
 from seatlook.wrinkle.shells import ShellWrinkles, element_frames
 
 _FLAT = 1e-3  # of a part's extent; what lies further from its plane is not flat
+_GAP = 0.05  # [m] between panels that are laid side by side
 
 
-def shell_solution(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShellCover:
+    """A state of a finite-element result, ready for maps and pictures.
+
+    Parameters
+    ----------
+    solution : Solution       zones are the parts
+    element : (m,) int64      row of the ``ShellWrinkles`` of each face, to map its values
+    projected : names of the parts that have no flat undeformed state: they are cut into panels by
+        the world axis that their faces look along, and textures are laid on along that axis
+    """
+
+    solution: Solution
+    element: IntArray
+    projected: tuple[str, ...]
+
+
+def shell_cover(
     shells: Shells,
     state: ShellState,
     wrinkles: ShellWrinkles,
     materials: Material | Mapping[int, Material],
-) -> tuple[Solution, IntArray]:
+) -> ShellCover:
     """Make a solution of the evaluated shells; each part becomes a panel and a zone.
 
-    The undeformed state must be flat, part by part: it is the pattern, and the world axis in which
-    a part is longer is its warp. The materials give the thickness of the pictures; the strains on
-    both surfaces are those that were evaluated.
+    The undeformed state of a part is its pattern if it is flat, and the world axis in which it is
+    longer is its warp. The strains on both surfaces are those that were evaluated, and a panel's
+    thickness is the mean of its shells.
 
     Parameters
     ----------
     wrinkles : of the same state, from ``shell_indices``
     materials : one for all parts, or part number -> Material
 
-    Returns
-    -------
-    solution : Solution
-    element : (m,) int64     row of ``wrinkles`` of each face, to map its values
-
     Raises
     ------
     InputError
-        No undeformed state, a part of it that is not flat, a part without a material.
+        A part without a material.
     """
-    if shells.reference is None:
-        raise InputError.single(
-            "reference", got="none", expected="the undeformed state, as pattern of the texture"
-        )
-    parts, panel = np.unique(shells.part[wrinkles.element], return_inverse=True)
+    parts, part = np.unique(shells.part[wrinkles.element], return_inverse=True)
     chosen = _materials(parts, materials)
+    reference = state.positions if shells.reference is None else shells.reference
     faces, element = _oriented(shells, wrinkles)
-    # Nodes on the border of two parts become two vertices, as a seam has two sides.
-    pair = panel[element][:, None] * np.int64(shells.node_count) + faces
+    flat = np.array([
+        shells.reference is not None and _is_flat(reference, faces[part[element] == k])
+        for k in range(len(parts))
+    ])  # fmt: skip
+    panel, owner, look = _panels(reference, faces, part[element], flat)
+    # Nodes on the border of two panels become two vertices, as a seam has two sides.
+    pair = panel[:, None] * np.int64(shells.node_count) + faces
     vertices, corners = np.unique(pair, return_inverse=True)
     corners = corners.reshape(-1, 3)
-    node, owner = vertices % shells.node_count, vertices // shells.node_count
-    rest, axes = _flat_parts(shells.reference[node], owner, corners, parts)
-    top, mid, bottom = _strains(shells, shells.reference, wrinkles, axes[panel])
+    node = vertices % shells.node_count
+    rest, warp = _laid_out(reference[node], vertices // shells.node_count, corners, look)
     names = tuple(shells.part_names.get(int(p)) or f"part {p}" for p in parts)
+    thickness = [state.thickness[wrinkles.element[part == k]].mean() for k in range(len(parts))]
     cover = Cover(
         rest=rest,
         uv=rest,
-        positions=shells.reference[node],
+        positions=reference[node],
         faces=corners,
-        panel=panel[element],
-        panel_names=names,
-        materials=chosen,
-        zone=panel[element],
+        panel=panel,
+        panel_names=_panel_names(names, owner, look, flat),
+        materials=tuple(_as_thick(chosen[k], thickness[k]) for k in owner),
+        zone=part[element],
         zone_names=names,
-        element_size=float(edge_lengths(rest, corners).mean()),
+        element_size=float(edge_lengths(state.positions[node], corners).mean()),
     )
     x = state.positions[node]
-    return Solution(
+    top, mid, bottom = _strains(shells, reference, wrinkles, element, warp[panel])
+    solution = Solution(
         cover=cover,
         positions=x,
         velocities=np.zeros_like(x),
-        strain_top=top[element],
-        strain_mid=mid[element],
-        strain_bottom=bottom[element],
+        strain_top=top,
+        strain_mid=mid,
+        strain_bottom=bottom,
         friction_anchor=np.full_like(x, np.nan),
         stage=f"time {state.time:g}",
         status="converged",
         reason="read from a finite-element result; equilibrium is that calculation's word",
-    ), element
+    )
+    projected = tuple(name for name, is_flat in zip(names, flat, strict=True) if not is_flat)
+    return ShellCover(solution=solution, element=element, projected=projected)
 
 
 def _materials(
@@ -107,33 +126,71 @@ def _oriented(shells: Shells, wrinkles: ShellWrinkles) -> tuple[IntArray, IntArr
     return np.where(turned[:, None], faces[:, ::-1], faces), element
 
 
-def _flat_parts(
-    points: FloatArray, owner: IntArray, corners: IntArray, parts: IntArray
+def _as_thick(material: Material, thickness: float) -> Material:
+    fabric = replace(material.fabric, thickness=float(thickness))
+    return replace(material, fabric=fabric)
+
+
+def _is_flat(points: FloatArray, faces: IntArray) -> bool:
+    """Whether a part lies in its mean plane, with no face turned over in it."""
+    p = points[np.unique(faces)]
+    area = face_vectors(points, faces)
+    normal = area.sum(axis=0)
+    size = float(np.linalg.norm(normal))
+    if size == 0 or not (area @ normal > 0).all():
+        return False
+    return bool(np.ptp(p @ (normal / size)) <= _FLAT * np.ptp(p, axis=0).max())
+
+
+def _panels(
+    points: FloatArray, faces: IntArray, part: IntArray, flat: np.ndarray
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Panel (m,) of each face; the part (p,) and the outward direction (p, 3) of each panel."""
+    normals = face_normals(points, faces)
+    axis = np.abs(normals).argmax(axis=1)
+    side = 2 * axis + (normals[np.arange(len(faces)), axis] < 0)
+    key, panel = np.unique(6 * part + np.where(flat[part], 0, side), return_inverse=True)
+    owner = key // 6
+    look = np.repeat(np.eye(3), 2, axis=0) * np.tile([1.0, -1.0], 3)[:, None]
+    out = look[key % 6]
+    for k in np.flatnonzero(flat[owner]):
+        total = face_vectors(points, faces[panel == k]).sum(axis=0)
+        out[k] = total / np.linalg.norm(total)
+    return panel.astype(np.int64), owner, out
+
+
+def _panel_names(
+    names: tuple[str, ...], owner: IntArray, look: FloatArray, flat: np.ndarray
+) -> tuple[str, ...]:
+    """Part names; of a part in several panels with where each looks, such as ``part 3 +z``."""
+    out = []
+    for k, direction in zip(owner.tolist(), look, strict=True):
+        axis = int(np.abs(direction).argmax())
+        sign = "-" if direction[axis] < 0 else "+"
+        out.append(names[k] if flat[k] else f"{names[k]} {sign}{'xyz'[axis]}")
+    return tuple(out)
+
+
+def _laid_out(
+    points: FloatArray, owner: IntArray, corners: IntArray, look: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return plane coordinates (n, 2), parts side by side, and their axes (parts, 2, 3)."""
+    """Plane coordinates (n, 2), panels side by side, and the warp (p, 3) of each."""
     rest = np.zeros((len(points), 2))
-    axes = np.zeros((len(parts), 2, 3))
+    warp = np.zeros((len(look), 3))
     left = 0.0
-    for k, number in enumerate(parts.tolist()):
+    for k, normal in enumerate(look):
         mine = owner == k
         p = points[mine] - points[mine].mean(axis=0)
-        normal = face_vectors(points, corners[mine[corners[:, 0]]]).sum(axis=0)
-        normal /= np.linalg.norm(normal)
-        height = p @ normal
-        if np.ptp(height) > _FLAT * np.ptp(p, axis=0).max():
-            raise InputError.single(
-                f"part {number}", got=f"{1e3 * np.ptp(height):.3g} mm out of plane at the start",
-                expected="a flat undeformed state",
-            )  # fmt: skip
-        axes[k] = _warp_and_weft(p, normal)
-        flat = p @ axes[k].T
+        axes = _warp_and_weft(p, normal)
+        warp[k] = axes[0]
+        flat = p @ axes.T
         rest[mine] = flat - [flat[:, 0].min() - left, flat[:, 1].min()]
-        left = float(rest[mine][:, 0].max()) + 0.05
-    return rest, axes
+        left = float(rest[mine][:, 0].max()) + _GAP
+    return rest, warp
 
 
 def _warp_and_weft(p: FloatArray, normal: FloatArray) -> FloatArray:
-    """Axes (2, 3) in the plane: along the world axis in which the part is longer, and across."""
+    """Axes (2, 3) in the plane: along the world axis in which the panel is longer, and across."""
     first, second = np.argsort(np.abs(normal), kind="stable")[:2]
     longer = first if np.ptp(p[:, first]) >= np.ptp(p[:, second]) else second
     warp = np.eye(3)[longer] - normal[longer] * normal
@@ -142,13 +199,22 @@ def _warp_and_weft(p: FloatArray, normal: FloatArray) -> FloatArray:
 
 
 def _strains(
-    shells: Shells, reference: FloatArray, wrinkles: ShellWrinkles, axes: FloatArray
+    shells: Shells,
+    reference: FloatArray,
+    wrinkles: ShellWrinkles,
+    element: IntArray,
+    warp: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Turn the strains from the elements' axes into warp and weft."""
+    """Turn the strains (m, 2, 2) of each face from the element's axes into warp and weft."""
     frame, _ = element_frames(shells, reference, wrinkles.element)
-    turn = axes @ np.swapaxes(frame[:, :2], 1, 2)
+    first, second = np.einsum("mad,md->am", frame[element, :2], warp)
+    size = np.hypot(first, second)
+    c, s = first / size, second / size
+    # Seen from the visible side, weft is to the left of warp, also where the shell was turned over.
+    left = wrinkles.sign[element]
+    turn = np.stack([np.stack([c, s], axis=1), np.stack([-left * s, left * c], axis=1)], axis=1)
     mid, half = (
-        turn @ strain @ np.swapaxes(turn, 1, 2)
+        turn @ strain[element] @ np.swapaxes(turn, 1, 2)
         for strain in (wrinkles.strain_mid, wrinkles.strain_half)
     )
     return mid + half, mid, mid - half

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,8 @@ from seatlook.io.shells import read_shells
 from seatlook.model import FloatArray, IntArray, ShellResult, ShellState, WrinkleMap
 from seatlook.model.scene import CurvatureMode
 from seatlook.model.shells import StrainAxes
-from seatlook.wrinkle import quantile
+from seatlook.wrinkle import map_top, quantile
+from seatlook.wrinkle.equations import StrainMeasure
 from seatlook.wrinkle.shells import DEFAULT_THRESHOLD, ShellWrinkles, shell_indices
 
 _PER_MM = 1e-3  # 1/m in 1/mm
@@ -30,6 +31,7 @@ def wrinkle_states(
     strain_axes: StrainAxes = "global",
     reference: Path | None = None,
     facing: FloatArray | None = None,
+    strain_measure: StrainMeasure | None = None,
 ) -> dict[str, Any]:
     """Evaluate all states of a d3plot or keyword deck; the result is fit for JSON.
 
@@ -40,6 +42,7 @@ def wrinkle_states(
     c_threshold : float [1/m]      default 10 for "paper", 20 for "tensor"
     thickness : float [m]          for files that do not hold it
     facing : (3,)                  the visible side, see ``shell_indices``
+    strain_measure : "green" or "logarithmic"; without it as the file has them
 
     Returns
     -------
@@ -60,23 +63,85 @@ def wrinkle_states(
         strain_axes=strain_axes, reference=reference,
     )  # fmt: skip
     threshold = DEFAULT_THRESHOLD[curvature] if c_threshold is None else c_threshold
-    states = []
-    for index, state in enumerate(result):
-        try:
-            wrinkles = shell_indices(
-                result.shells, state, curvature=curvature, c_threshold=threshold, facing=facing
-            )
-        except InputError as error:
-            raise InputError(_placed(p, path, index) for p in error.problems) from error
-        states.append(_state(result, state, wrinkles))
+    evaluated = evaluated_states(
+        path, result, curvature=curvature, c_threshold=threshold, facing=facing,
+        strain_measure=strain_measure,
+    )  # fmt: skip
     return {
         "file": str(path),
         "curvature": curvature,
         "c_threshold_per_mm": threshold * _PER_MM,
         "shells": len(result.shells),
         "notes": list(result.notes),
-        "states": states,
+        "states": [state_figures(result, *pair) for pair in evaluated],
     }
+
+
+def evaluated_states(
+    path: Path,
+    result: ShellResult,
+    *,
+    curvature: CurvatureMode,
+    c_threshold: float,
+    facing: FloatArray | None = None,
+    strain_measure: StrainMeasure | None = None,
+) -> Iterator[tuple[ShellState, ShellWrinkles]]:
+    """Evaluate one state after the other, so that only one needs to be in memory.
+
+    Raises
+    ------
+    InputError
+        As ``seatlook.wrinkle.shells.shell_indices``, with the file and the number of the state.
+    """
+    for index, state in enumerate(result):
+        try:
+            yield state, shell_indices(
+                result.shells, state, curvature=curvature, c_threshold=c_threshold, facing=facing,
+                strain_measure=strain_measure,
+            )  # fmt: skip
+        except InputError as error:
+            raise InputError(_placed(p, path, index) for p in error.problems) from error
+
+
+def judged_states(
+    path: Path,
+    result: ShellResult,
+    *,
+    kept: Collection[int],
+    curvature: CurvatureMode,
+    c_threshold: float,
+    facing: FloatArray | None = None,
+    strain_measure: StrainMeasure | None = None,
+) -> tuple[list[dict[str, Any]], dict[int, tuple[ShellState, ShellWrinkles]], float]:
+    """Evaluate all states, keep those to be drawn.
+
+    Returns
+    -------
+    figures : per state, as in ``wrinkle_states``
+    states : number -> state and its indices, of ``kept``
+    top : upper end of the range of W2 for maps of any state
+
+    Raises
+    ------
+    InputError
+        A state to keep that is not there; else as ``evaluated_states``.
+    """
+    absent = sorted(set(kept) - set(range(len(result))))
+    if absent:
+        raise InputError.single(
+            "state", got=str(absent[0]), expected=f"0 to {len(result) - 1}", file=path
+        )
+    evaluated = evaluated_states(
+        path, result, curvature=curvature, c_threshold=c_threshold, facing=facing,
+        strain_measure=strain_measure,
+    )  # fmt: skip
+    figures, states, top = [], {}, 1.0
+    for number, (state, wrinkles) in enumerate(evaluated):
+        figures.append(state_figures(result, state, wrinkles))
+        top = max(top, map_top(wrinkles.indices))
+        if number in kept:
+            states[number] = state, wrinkles
+    return figures, states, top
 
 
 def _placed(problem: Problem, path: Path, index: int) -> Problem:
@@ -86,7 +151,10 @@ def _placed(problem: Problem, path: Path, index: int) -> Problem:
     )  # fmt: skip
 
 
-def _state(result: ShellResult, state: ShellState, wrinkles: ShellWrinkles) -> dict[str, Any]:
+def state_figures(
+    result: ShellResult, state: ShellState, wrinkles: ShellWrinkles
+) -> dict[str, Any]:
+    """Return the figures of one state, whole and part by part; see ``wrinkle_states``."""
     part = result.shells.part[wrinkles.element]
     names = result.shells.part_names
     everyone = np.arange(len(wrinkles.element))

@@ -23,6 +23,8 @@ from seatlook.wrinkle.measures import (
     surface_of,
     tension_state,
     threshold_of_radius,
+    thresholds,
+    w2_net,
     wrinkle_strain,
 )
 from seatlook.wrinkle.recovery import low_passed, recover, recovery_error, shape_curvature
@@ -36,7 +38,7 @@ from seatlook.wrinkle.texture import (
     distortion_table,
 )
 from seatlook.wrinkle.worst import Wrinkle, section_across, worst_wrinkles
-from seatlook.wrinkle.zone import ZoneRow, quantile, zone_table
+from seatlook.wrinkle.zone import ZoneRow, map_top, quantile, zone_table
 
 __all__ = [
     "DEAD_BAND",
@@ -59,6 +61,7 @@ __all__ = [
     "distortion_table",
     "isotropic_membrane",
     "low_passed",
+    "map_top",
     "quantile",
     "recover",
     "recovery_error",
@@ -74,6 +77,8 @@ __all__ = [
     "surface_strains",
     "tension_state",
     "threshold_of_radius",
+    "thresholds",
+    "w2_net",
     "worst_wrinkles",
     "wrinkle_index",
     "wrinkle_indices",

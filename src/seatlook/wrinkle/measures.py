@@ -13,7 +13,7 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.kinematics import principal_values
-from seatlook.model import FloatArray, IntArray, Solution, WrinkleMap
+from seatlook.model import Cover, FloatArray, IntArray, Solution, WrinkleMap
 from seatlook.model.scene import CurvatureMode
 from seatlook.wrinkle.equations import relative_curvature, wrinkle_index
 from seatlook.wrinkle.recovery import low_passed, shape_curvature
@@ -152,6 +152,15 @@ def threshold_of_radius(radius: float | FloatArray, curvature: CurvatureMode) ->
     if not bool(((r > 0) & np.isfinite(r)).all()):
         raise InputError.single("radius", got=radius, expected="above 0")
     return np.asarray((1.0 if curvature == "tensor" else 0.5) / r)
+
+
+def thresholds(cover: Cover, curvature: CurvatureMode, default: float) -> FloatArray:
+    """C_threshold per face, (m,) [1/m]: the material's own, by its radius, else the default."""
+    own = [m.c_threshold or default for m in cover.materials]
+    for k, m in enumerate(cover.materials):
+        if m.first_wrinkle_radius is not None:
+            own[k] = float(threshold_of_radius(m.first_wrinkle_radius, curvature))
+    return np.array(own)[cover.panel]
 
 
 def w2_net(surface: Surface) -> FloatArray:

@@ -21,11 +21,14 @@ class Section:
     along : (k,) float64 [m]     distance on the flat panel from the middle of the line
     height : (k,) float64 [m]    above the straight edge that rests on the profile, so <= 0
     points : (k, 3) float64 [m]  the same points in space
+    intended : (k,) float64 [m]  height of the shape that was meant above the same edge, of either
+        sign; None where it is not asked for
     """
 
     along: FloatArray
     height: FloatArray
     points: FloatArray
+    intended: FloatArray | None = None
 
     @property
     def depth(self) -> float:
@@ -41,6 +44,7 @@ def section(
     middle: FloatArray,
     direction: FloatArray,
     half_length: float,
+    design: FloatArray | None = None,
 ) -> Section:
     """Cut the solved cover along a straight line of a flat panel.
 
@@ -51,6 +55,7 @@ def section(
     middle : (2,) float64 [m]        middle of the line, in ``cover.rest`` coordinates
     direction : (2,) float64         along the line, any length but 0
     half_length : float [m]          to each side; the line ends where it leaves the panel
+    design : (n, 3) float64 [m]      the shape that was meant, to be shown beside the solved one
 
     Raises
     ------
@@ -75,9 +80,16 @@ def section(
     low = int(outside[outside < count].max(initial=-1)) + 1
     high = int(outside[outside > count].min(initial=len(along)))
     inside = slice(low, high)
-    points = np.einsum("kc,kcd->kd", weight[inside], positions[cover.faces[face[inside]]])
-    height = _below_edge(points, _normal(cover, positions, face[inside]))
-    return Section(along=along[inside], height=height, points=points)
+    corners = cover.faces[face[inside]]
+    points = np.einsum("kc,kcd->kd", weight[inside], positions[corners])
+    edge = _StraightEdge.on(points, _normal(cover, positions, face[inside]))
+    meant = None if design is None else np.einsum("kc,kcd->kd", weight[inside], design[corners])
+    return Section(
+        along=along[inside],
+        height=np.minimum(edge.height(points), 0.0),
+        points=points,
+        intended=None if meant is None else edge.height(meant),
+    )
 
 
 def _located(cover: Cover, panel: int, line: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -103,21 +115,35 @@ def _normal(cover: Cover, positions: FloatArray, face: IntArray) -> FloatArray:
     return np.asarray(total / np.linalg.norm(total))
 
 
-def _below_edge(points: FloatArray, normal: FloatArray) -> FloatArray:
-    """Heights above the upper convex hull of the profile in its own plane; none is above 0."""
-    chord = points[-1] - points[0]
-    axis = chord - (chord @ normal) * normal
-    size = float(np.linalg.norm(axis))
-    if size == 0:
-        return np.zeros(len(points))
-    x, z = (points - points[0]) @ (axis / size), (points - points[0]) @ normal
-    order = np.argsort(x, kind="stable")
-    hull: list[int] = []
-    for i in order:
-        while len(hull) > 1 and _turns_up(x, z, hull[-2], hull[-1], int(i)):
-            hull.pop()
-        hull.append(int(i))
-    return np.asarray(np.minimum(z - np.interp(x, x[hull], z[hull]), 0.0))
+@dataclass(frozen=True, slots=True)
+class _StraightEdge:
+    """The upper convex hull of a profile in its own plane: x along it, z above it."""
+
+    origin: FloatArray
+    axis: FloatArray
+    normal: FloatArray
+    x: FloatArray
+    z: FloatArray
+
+    @classmethod
+    def on(cls, points: FloatArray, normal: FloatArray) -> _StraightEdge:
+        """Lay the edge on a profile (k, 3)."""
+        chord = points[-1] - points[0]
+        axis = chord - (chord @ normal) * normal
+        size = float(np.linalg.norm(axis))
+        axis = axis / size if size > 0 else axis
+        x, z = (points - points[0]) @ axis, (points - points[0]) @ normal
+        hull: list[int] = []
+        for i in np.argsort(x, kind="stable"):
+            while len(hull) > 1 and _turns_up(x, z, hull[-2], hull[-1], int(i)):
+                hull.pop()
+            hull.append(int(i))
+        return cls(points[0], axis, normal, x[hull], z[hull])
+
+    def height(self, points: FloatArray) -> FloatArray:
+        """Heights (k,) [m] of points above the edge."""
+        step = points - self.origin
+        return np.asarray(step @ self.normal - np.interp(step @ self.axis, self.x, self.z))
 
 
 def _turns_up(x: FloatArray, z: FloatArray, a: int, b: int, c: int) -> bool:

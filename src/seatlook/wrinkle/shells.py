@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError
+from seatlook.kinematics import green_of_logarithmic, logarithmic_strain
 from seatlook.model import FloatArray, IntArray, Shells, ShellState, WrinkleMap
 from seatlook.model.scene import CurvatureMode
-from seatlook.wrinkle.equations import wrinkle_indices
+from seatlook.wrinkle.equations import STRAIN_MEASURES, StrainMeasure, wrinkle_indices
 from seatlook.wrinkle.jet import vertex_curvature
 from seatlook.wrinkle.orientation import agree
 
@@ -63,6 +64,7 @@ def shell_indices(
     curvature: CurvatureMode = "paper",
     c_threshold: float | None = None,
     facing: FloatArray | None = None,
+    strain_measure: StrainMeasure | None = None,
 ) -> ShellWrinkles:
     """Evaluate eqs. (1) to (6) on the shells of one state.
 
@@ -75,6 +77,8 @@ def shell_indices(
     c_threshold : float [1/m]      default 10 ("paper") or 20 ("tensor")
     facing : (3,) float64          the visible side: every connected piece is turned so that its
         mean normal has a component along it; without it the file's normals decide
+    strain_measure : "green" or "logarithmic", to evaluate the equations in; without it as the
+        strains are: logarithmic from a file, Green's where they come from the shape
 
     Raises
     ------
@@ -92,6 +96,9 @@ def shell_indices(
     side = agree(corners, area)
     sign = side.sign * _outward(side.piece, side.sign, frame, area, facing)
     mid, half, source = _strains(shells, state, element, frame, sign)
+    if strain_measure is not None:
+        given: StrainMeasure = "green" if state.strain_inner is None else "logarithmic"
+        mid, half = _measured(mid, half, given, strain_measure)
     threshold = DEFAULT_THRESHOLD[curvature] if c_threshold is None else c_threshold
     indices = wrinkle_indices(
         mid + half, mid, mid - half, state.thickness[element], threshold, curvature=curvature
@@ -107,6 +114,20 @@ def shell_indices(
         one_sided=side.one_sided,
         source=source,
     )
+
+
+def _measured(
+    mid: FloatArray, half: FloatArray, given: StrainMeasure, wanted: StrainMeasure
+) -> tuple[FloatArray, FloatArray]:
+    """Turn both surfaces and the middle from one measure into the other."""
+    if wanted not in STRAIN_MEASURES:
+        raise InputError.single(
+            "strain_measure", got=repr(wanted), expected=f"one of {', '.join(STRAIN_MEASURES)}"
+        )
+    if given == wanted:
+        return mid, half
+    turn = green_of_logarithmic if wanted == "green" else logarithmic_strain
+    return turn(mid), 0.5 * (turn(mid + half) - turn(mid - half))
 
 
 def element_frames(

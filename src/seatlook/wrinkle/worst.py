@@ -74,8 +74,10 @@ def worst_wrinkles(
     return tuple(_describe(solution, indices, np.flatnonzero(region == r)) for r in ranked)
 
 
-def section_across(solution: Solution, wrinkle: Wrinkle) -> Section:
-    """Cut the cover across a wrinkle at its deepest place."""
+def section_across(
+    solution: Solution, wrinkle: Wrinkle, *, design: FloatArray | None = None
+) -> Section:
+    """Cut the cover across a wrinkle at its deepest place; ``design`` as for ``section``."""
     across = np.array([-wrinkle.along[1], wrinkle.along[0]])
     cover = solution.cover
     half = min(2.0 * wrinkle.width + 2.0 * cover.element_size, _LONGEST_SECTION)
@@ -86,6 +88,7 @@ def section_across(solution: Solution, wrinkle: Wrinkle) -> Section:
         middle=wrinkle.rest,
         direction=across,
         half_length=half,
+        design=design,
     )
 
 

@@ -22,6 +22,8 @@ class ZoneRow:
     stretch_share : [1] in [0, 1]   part of the zone's W2 that is W_stretch; 0 where W2 is 0
     element_size : [m]              mean edge length h of the zone's faces at rest
     w2_error : [1]                  rms of W2 against its recovered field, an estimate of its error
+    w2_net_mean, w2_net_p95, w2_net_area_share : [1]   the same figures of W2 without the design's
+        own curvature; None where it was not evaluated
     """
 
     zone: str
@@ -34,10 +36,18 @@ class ZoneRow:
     stretch_share: float
     element_size: float
     w2_error: float
+    w2_net_mean: float | None = None
+    w2_net_p95: float | None = None
+    w2_net_area_share: float | None = None
 
 
-def zone_table(solution: Solution, indices: WrinkleMap) -> tuple[ZoneRow, ...]:
-    """Summarise W2 and its causes zone by zone, empty zones left out."""
+def zone_table(
+    solution: Solution, indices: WrinkleMap, net: FloatArray | None = None
+) -> tuple[ZoneRow, ...]:
+    """Summarise W2 and its causes zone by zone, empty zones left out.
+
+    ``net`` (m,) is ``w2_net`` of the same solution, to stand beside W2.
+    """
     cover = solution.cover
     area = cover.rest_area
     error = recovery_error(cover.faces, area, indices.w2)
@@ -63,9 +73,24 @@ def zone_table(solution: Solution, indices: WrinkleMap) -> tuple[ZoneRow, ...]:
                 stretch_share=stretch / mean if mean > 0 else 0.0,
                 element_size=float(side[inside].mean()),
                 w2_error=_mean(error[inside] ** 2, weight) ** 0.5,
+                **({} if net is None else _net_figures(net[inside], weight)),
             )
         )
     return tuple(rows)
+
+
+def map_top(indices: WrinkleMap) -> float:
+    """Upper end of the range of W2 that a map shows: at least 1, where wrinkles begin."""
+    # Eight in a thousand faces may lie above: a single pinched triangle must not wash out a map.
+    return max(1.0, float(np.quantile(indices.w2, 0.992)))
+
+
+def _net_figures(net: FloatArray, weight: FloatArray) -> dict[str, float]:
+    return {
+        "w2_net_mean": _mean(net, weight),
+        "w2_net_p95": quantile(net, weight, 0.95),
+        "w2_net_area_share": _mean((net > 1).astype(float), weight),
+    }
 
 
 def _mean(values: FloatArray, weight: FloatArray) -> float:

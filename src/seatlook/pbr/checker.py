@@ -1,0 +1,56 @@
+"""A checker or stripes drawn on the pattern, to see how the cover distorts a texture."""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.model import Camera, Solution
+from seatlook.pbr.maps import FACTOR, sampled, shaded, titled
+from seatlook.pbr.picture import Picture
+from seatlook.pbr.studio import studio
+
+Motif = Literal["checker", "stripe"]
+_DARK, _LIGHT = 0.05, 0.72
+_BARE = (0.6, 0.6, 0.6)
+
+
+def render_checker(
+    solution: Solution, *, camera: Camera, size: float = 0.010, motif: Motif = "checker"
+) -> Picture:
+    """Draw squares, or stripes along the warp, that are equally large on the flat pattern.
+
+    Parameters
+    ----------
+    size : float [m]   side of a square, or width of a stripe
+
+    Returns
+    -------
+    Picture
+        Display-referred, shaded from the camera; ``value_range`` is (0, size in mm).
+
+    Raises
+    ------
+    InputError
+        A size of 0 or less, an unknown motif.
+    NoOffscreenContext, RenderError
+    """
+    if not size > 0:
+        raise InputError.single("size", got=size, expected="above 0")
+    if motif not in get_args(Motif):
+        raise InputError.single("motif", got=repr(motif), expected="'checker' or 'stripe'")
+    stage = studio(solution)
+    ids = stage.faces(camera, FACTOR)
+    corners = solution.cover.uv[solution.cover.faces]
+    (u, cosine), (v, _) = (
+        sampled(stage, ids, camera, np.ascontiguousarray(corners[:, :, k])) for k in (0, 1)
+    )
+    cell = np.floor(v / size) + (np.floor(u / size) if motif == "checker" else 0.0)
+    tone = np.where(cell % 2 == 0, _LIGHT, _DARK)
+    colour = np.repeat(tone[..., None], 3, axis=2)
+    colour[np.isnan(cell)] = _BARE
+    what = "squares" if motif == "checker" else "stripes along the warp"
+    picture = titled(shaded(colour, ids, cosine), f"{what} of {1e3 * size:g} mm on the pattern")
+    return Picture(pixels=np.asarray(picture), value_range=(0.0, 1e3 * size))

@@ -1,0 +1,59 @@
+"""A view and a light for a cover that no scene describes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from seatlook.mesh import face_vectors
+from seatlook.model import Camera, FloatArray, Light, Rig, Solution
+
+_FOV = 16.2  # [deg] vertical, that of the named views
+_TILT = np.radians(35.0)  # of the view against the mean normal
+_LIGHT_TILT = np.radians(55.0)  # of the light, to the other side
+_SUN = 97_000.0  # [lx] on a facing plane
+_SKY = 4_000.0  # [cd/m2]
+
+
+def fitted_view(solution: Solution, *, size: tuple[int, int] = (1280, 720)) -> Camera:
+    """Return a camera that sees all of the cover from its visible side, a little from aside."""
+    normal, aside, up = _axes(solution)
+    x = solution.positions[np.unique(solution.cover.faces)]
+    middle = 0.5 * (x.min(axis=0) + x.max(axis=0))
+    radius = float(np.linalg.norm(x - middle, axis=1).max())
+    narrow = min(1.0, size[0] / size[1])
+    distance = 1.05 * radius / np.sin(0.5 * np.radians(_FOV) * narrow)
+    toward = np.cos(_TILT) * normal + np.sin(_TILT) * (0.5 * aside - up) / np.hypot(0.5, 1.0)
+    return Camera(
+        name="fitted",
+        position=middle + distance * toward,
+        target=middle,
+        up=up,
+        vertical_fov_deg=_FOV,
+        size=size,
+    )
+
+
+def side_light(solution: Solution) -> Rig:
+    """Return sun from the far side, low enough to show relief, and sky."""
+    normal, aside, up = _axes(solution)
+    toward = np.cos(_LIGHT_TILT) * normal + np.sin(_LIGHT_TILT) * (up - 0.5 * aside) / np.hypot(
+        0.5, 1.0
+    )
+    sun = Light(name="sun", intensity=_SUN, vector=toward, near=False, size=np.radians(0.5332))
+    # The seat's grey card lies level; these parts may stand or hang.
+    lux = _SUN * np.cos(_LIGHT_TILT) + np.pi * _SKY
+    return Rig(name="side light", lights=(sun,), ambient=_SKY, ev100=float(np.log2(lux / 2.5)))
+
+
+def _axes(solution: Solution) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Mean visible normal; across it a horizontal axis, and the third, upward or away."""
+    area = face_vectors(solution.positions, solution.cover.faces)
+    total = area.sum(axis=0)
+    size = float(np.linalg.norm(total))
+    # A closed part looks everywhere alike.
+    whole = float(np.linalg.norm(area, axis=1).sum())
+    normal = total / size if size > 0.05 * whole else np.array([0.0, -0.6, 0.8])
+    up = np.array([0.0, 0.0, 1.0]) if abs(normal[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
+    aside = np.cross(up, normal)
+    aside /= np.linalg.norm(aside)
+    return normal, aside, np.cross(normal, aside)
