@@ -40,6 +40,10 @@ class Potential:
         parts = [e.hessian(x, definite=definite) for e in self.energies]
         return csc_array(sum(parts[1:], parts[0]))
 
+    def dormant(self, x: FloatArray) -> FloatArray:
+        """Stiffness [N/m], flattened, that may wake beside that of the Hessian, as contact does."""
+        return np.zeros(x.size)
+
 
 @dataclass(frozen=True, slots=True)
 class Descent:
@@ -76,7 +80,7 @@ class Lbfgs:
         self,
         potential: Potential,
         x: FloatArray,
-        factor: Preconditioner,
+        factor: Preconditioner | None,
         *,
         done: Callable[[FloatArray], bool],
         iterations: int,
@@ -107,12 +111,15 @@ class Lbfgs:
             value = new
         return Descent(value, iterations, evaluations, stalled=False)
 
-    def _turn(self, factor: Preconditioner, kept: int) -> None:
+    def _turn(self, factor: Preconditioner | None, kept: int) -> None:
         """Two-loop recursion over the last ``min(kept, memory)`` pairs."""
         q, work = self._direction, self._work
         np.negative(self.gradient, out=work)
         kernel.first_loop(work, self._s, self._y, self._rho, self._alpha, kept)
-        factor.solve(work, q)
+        if factor is None:
+            np.copyto(q, work)
+        else:
+            factor.solve(work, q)
         kernel.second_loop(q, self._s, self._y, self._rho, self._alpha, kept)
 
     def _search(

@@ -81,13 +81,18 @@ class Potential:
         loads = sum(abs(term.value(x, np.zeros_like(x))) for term in self.others)
         return float(2.0 * np.ptp(energies) + 1e-14 * (abs(energies[0]) + loads))
 
-    def residual(self, x: FloatArray, gradient: FloatArray) -> float:
-        """Return the largest force out of balance over the mean elastic nodal force."""
+    def force_scale(self, x: FloatArray) -> float:
+        """Return the mean elastic nodal force [N]."""
         mean = 0.0
         for term in self.elastic:
             part = np.zeros_like(x)
             term.value(x, part)
             mean += float(np.linalg.norm(part, axis=1).mean())
+        return mean
+
+    def residual(self, x: FloatArray, gradient: FloatArray) -> float:
+        """Return the largest force out of balance over the mean elastic nodal force."""
+        mean = self.force_scale(x)
         worst = float(np.linalg.norm(np.where(self.free, gradient, 0.0), axis=1).max())
         return worst / mean if mean > 0.0 else (0.0 if worst == 0.0 else np.inf)
 
@@ -137,7 +142,7 @@ def newton(
         if state.residual <= tolerance:
             if downhill == 0 or kick == 0.0:
                 return replace(state, downhill=downhill, energy=np.array(history))
-            x = _push(potential, state.x, hessian, factor, kick)
+            x = push(potential, state.x, hessian, factor, kick)
             energy, gradient = potential.value(x)
             state = replace(state, x=x, kicks=state.kicks + 1)
         else:
@@ -155,6 +160,9 @@ def newton(
             residual=potential.residual(x, gradient),
             iterations=state.iterations + 1,
         )
+    if state.residual <= tolerance:
+        downhill = factorise(potential.hessian(state.x, definite=False))[1]
+        state = replace(state, downhill=downhill)
     return replace(state, energy=np.array(history))
 
 
@@ -198,7 +206,7 @@ def factorise(hessian: csc_array) -> tuple[SuperLU, int]:
 
 def _definite(potential: Potential, x: FloatArray, hessian: csc_array, factor: SuperLU) -> SuperLU:
     """Factor the Hessian lifted by little more than its lowest eigenvalue, or the projected one."""
-    lowest, _ = _softest(hessian, factor)
+    lowest, _ = softest(hessian, factor)
     projected = potential.hessian(x, definite=True)
     scale = float(projected.diagonal().mean())
     shift = max(2.0 * abs(lowest), 1e-12 * scale)
@@ -214,7 +222,7 @@ def _lifted(matrix: csc_array, shift: float) -> csc_array:
     return csc_array(matrix + shift * eye_array(matrix.shape[0]))
 
 
-def _softest(hessian: csc_array, factor: SuperLU) -> tuple[float, FloatArray]:
+def softest(hessian: csc_array, factor: SuperLU) -> tuple[float, FloatArray]:
     """Return the lowest of the eigenvalues around zero, and its mode."""
     inverse = LinearOperator(hessian.shape, matvec=factor.solve, dtype=np.float64)
     start = np.random.default_rng(0).standard_normal(hessian.shape[0])
@@ -226,11 +234,11 @@ def _softest(hessian: csc_array, factor: SuperLU) -> tuple[float, FloatArray]:
     return float(values[low]), np.asarray(modes[:, low])
 
 
-def _push(
+def push(
     potential: Potential, x: FloatArray, hessian: csc_array, factor: SuperLU, kick: float
 ) -> FloatArray:
     """Move along the softest mode, to the side where the potential is lower."""
-    mode = potential.spread(_softest(hessian, factor)[1])
+    mode = potential.spread(softest(hessian, factor)[1])
     mode *= kick / np.linalg.norm(mode, axis=1).max()
     sides = [x + mode, x - mode]
     return min(sides, key=lambda side: potential.value(side)[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -13,12 +14,16 @@ from seatlook.model import Cover, FloatArray, Solution
 from seatlook.solver.contact import settled_rows
 from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.energy import Energy
+from seatlook.solver.explicit import Explicit, Integrator
 from seatlook.solver.factor import Factor, Preconditioner, SplitFactor
 from seatlook.solver.foundation import Foundation
 from seatlook.solver.inertia import Gravity, Inertia
 from seatlook.solver.kernels.lbfgs import largest_row
-from seatlook.solver.lbfgs import Lbfgs, Potential
+from seatlook.solver.lbfgs import Potential
+from seatlook.solver.method import Method, minimiser
+from seatlook.solver.newton import factorise, softest
 from seatlook.solver.stages import Step
+from seatlook.solver.state import OfPositions, StatePotential, masses
 from seatlook.solver.ties import Ties
 
 _KEPT_VELOCITY = 0.5  # share of the velocity that a step hands to the next
@@ -69,11 +74,8 @@ class Process:
         self.panel[cover.faces] = cover.panel[:, None]
         tension = np.array([np.sqrt(f.warp.stiffness[0] * f.weft.stiffness[0]) for f in fabrics])
         self._tension = tension
-        softness = max(
-            max(f.bending_warp, f.bending_weft) / (k * cover.element_size**2)
-            for f, k in zip(fabrics, tension, strict=True)
-        )
-        self._bending_in_factor = softness > _STIFF_BENDING
+        softness = self.sheet.rigidity / (tension[cover.panel] * cover.element_size**2)
+        self._bending_in_factor = bool(softness.max() > _STIFF_BENDING)
         self._mass: FloatArray = np.array(self.sheet.mass, dtype=np.float64)
         self.gravity = Gravity(self._mass)
         self.inertia = Inertia(self._mass, dt)
@@ -96,6 +98,7 @@ class Process:
         self.method = method
         self._minimiser = minimiser(method, self.state.shape)
         self._factor: Preconditioner | None = None
+        self._integrator: Integrator | None = None
         self._taut, self._evaluations = _TAUT, 0
         self._work, self._start = np.zeros_like(self.state), np.zeros_like(self.x)
 
@@ -129,7 +132,7 @@ class Process:
 
     def begin(self, *, rest: bool = False) -> None:
         """Begin a stage, or the way to rest with all ties closed."""
-        self._factor = None
+        self._factor, self._integrator = None, None
         if self.foundation is not None:
             self.foundation.begin(self.state)
         if rest:
@@ -169,6 +172,21 @@ class Process:
             iterations=iterations,
         )
 
+    def downhill(self, kick: float = 0.0) -> int:
+        """Count the directions in which the static potential falls; with a kick [m], take one.
+
+        What lags (friction, multipliers) is held.
+        """
+        hessian = self._static.hessian(self.state, definite=False)
+        factor, count = factorise(hessian)
+        if count and kick > 0.0:
+            mode = softest(hessian, factor)[1].reshape(self.state.shape)
+            mode *= kick / largest_row(mode)
+            sides = [self.state + mode, self.state - mode]
+            values = [self._static.value(side, self._work) for side in sides]
+            np.copyto(self.state, sides[int(np.argmin(values))])
+        return count
+
     def resultants(self) -> dict[str, FloatArray]:
         """Sum of the forces on the cover by cause, each (3,) [N]."""
         forces = {}
@@ -196,6 +214,23 @@ class Process:
         self.v /= self.dt
         self._evaluations = descent.evaluations
         record = self.record(descent.iterations)
+        self.ties.update(self.x)
+        return record
+
+    def _integrate(self, options: Explicit, *, refactor: bool) -> Record:
+        """Go through a time step by central differences."""
+        if self._integrator is None:
+            damping = -np.log(_KEPT_VELOCITY) / self.dt
+            own = masses(self._mass, len(self.state))
+            self._integrator = Integrator(options, own, damping)
+            refactor = True
+        if refactor:
+            self._integrator.renew(self._static, self.state)
+        n = len(self.x)
+        np.copyto(self._integrator.velocity[:n], self.v)
+        steps = self._integrator.run(self._static, self.state, self.dt)
+        np.copyto(self.v, self._integrator.velocity[:n])
+        record = self.record(steps)
         self.ties.update(self.x)
         return record
 
@@ -239,9 +274,5 @@ class Process:
         diagonal[tied] += _HELD
         if self.foundation is not None:
             diagonal += self.foundation.contact.stiffness().diagonal()
-        across = (
-            self.sheet.across()
-            + self._taut * self.sheet.stiffness()
-            + diags_array(diagonal)
-        )
+        across = self.sheet.across() + self._taut * self.sheet.stiffness() + diags_array(diagonal)
         return SplitFactor(self._matrix(), csc_array(across), normal)

@@ -7,19 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
 from seatlook.errors import InputError, SolverError
 from seatlook.model import Fabric, FloatArray, IntArray
 from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.energy import Energy
+from seatlook.solver.explicit import Explicit, UnstableStepError
 from seatlook.solver.loads import DeadLoad, Pressure
-from seatlook.solver.newton import Equilibrium, Potential, newton
-
-_PATIENCE = 30
-_SOFTENING = (1e-4, 1e-2)
-_KICK = 0.5
+from seatlook.solver.method import MethodName, method_of
+from seatlook.solver.newton import Equilibrium, Potential
+from seatlook.solver.statics import equilibrium
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +67,9 @@ def solve_sheet(
     gravity: Sequence[float] = (0.0, 0.0, 0.0),
     supports: Sequence[Energy] = (),
     steps: int = 1,
+    method: MethodName | Explicit = "newton",
     tolerance: float = 1e-3,
-    max_iterations: int = 300,
+    max_iterations: int | None = None,
     strict: bool = False,
 ) -> SheetSolution:
     """Find the stable equilibrium of a sheet under loads and supports.
@@ -87,12 +86,18 @@ def solve_sheet(
     gravity : (3,) [m/s2]            acts on the fabric's mass
     supports : further energies, such as a foundation
     steps : loads and prescribed movements are applied in this many equal steps
+    method : "newton" (with a softened membrane first where the sheet is thin), "lbfgs" with a
+        prefactored matrix, or "explicit" (damped, with masses that make all waves equally slow;
+        ``Explicit(time_step=...)`` moves in real time with the sheet's own mass).
+        With each the exact Hessian is looked at last: an equilibrium that is unstable is left.
     tolerance : residual that counts as converged
+    max_iterations : 300 for Newton, 10,000 for L-BFGS, 4,000 times 50 steps for explicit
     strict : raise instead of returning what has not converged
 
     Raises
     ------
-    SheetError                          ``strict`` and not converged
+    SheetError                          ``strict`` and not converged; with the explicit method
+        always, where the time step is not stable
     InputError, InvertedElementError    the mesh is no flat oriented sheet
 
     Examples
@@ -109,28 +114,19 @@ def solve_sheet(
     >>> round(float(solved.sheet.strains(solved.positions)[1][0, 0, 0]), 4)
     0.0099
     """
+    chosen = method_of(method)
     start = np.pad(np.asarray(rest, dtype=np.float64), ((0, 0), (0, 1)))
     if positions is not None:
         start = np.array(positions, dtype=np.float64, order="C")
     held = _held(len(rest), fixed, clamped)
-    sheet = ElasticSheet(
-        rest,
-        faces,
-        np.zeros(len(faces), dtype=np.int64),
-        [fabric],
-        clamped=clamped,
-        positions=start,
-    )
+    panel = np.zeros(len(faces), dtype=np.int64)
+    sheet = ElasticSheet(rest, faces, panel, [fabric], clamped=clamped, positions=start)
     target = start if prescribed is None else np.where(held, prescribed, start)
     force = np.outer(sheet.mass, gravity)
     if loads is not None:
         force += loads
-    rim = np.unique(sheet.edges.ends[sheet.edges.free])
-    loose = int((~held[rim]).any(axis=1).sum())
-    if pressure and loose:
-        raise InputError.single(
-            "pressure", got=f"{loose} rim vertices that can move", expected="a rim held all round"
-        )
+    if pressure:
+        _check_rim(sheet, held)
     if steps < 1:
         raise InputError.single("steps", got=steps, expected="1 or more")
     x = start
@@ -140,12 +136,28 @@ def solve_sheet(
             others.append(Pressure(sheet.faces, share * pressure))
         potential = Potential(sheet.energies, others, ~held)
         x = _moved(sheet, x, start + share * (target - start), held)
-        found = _equilibrium(sheet, potential, x, tolerance, max_iterations)
+        try:
+            found = equilibrium(
+                sheet, potential, x, chosen, tolerance=tolerance, max_iterations=max_iterations
+            )
+        except UnstableStepError as error:
+            found = Equilibrium(x, np.inf, np.zeros(0), 0, -1, 0)
+            raise SheetError(str(error), _report(sheet, found, potential, tolerance)) from error
         x = found.x
     solution = _report(sheet, found, potential, tolerance)
     if strict and not solution.converged:
         raise SheetError(solution.reason, solution)
     return solution
+
+
+def _check_rim(sheet: ElasticSheet, held: npt.NDArray[np.bool_]) -> None:
+    """Refuse a pressure that has no potential."""
+    rim = np.unique(sheet.edges.ends[sheet.edges.free])
+    loose = int((~held[rim]).any(axis=1).sum())
+    if loose:
+        raise InputError.single(
+            "pressure", got=f"{loose} rim vertices that can move", expected="a rim held all round"
+        )
 
 
 def _held(
@@ -162,50 +174,6 @@ def _held(
             )
         held |= mask if mask.ndim == 2 else mask[:, None]
     return held
-
-
-class _Softened:
-    """An energy times a factor."""
-
-    def __init__(self, energy: Energy, factor: float) -> None:
-        self._energy, self._factor = energy, factor
-
-    def value(self, x: FloatArray, gradient: FloatArray) -> float:
-        part = np.zeros_like(x)
-        energy = self._energy.value(x, part)
-        gradient += self._factor * part
-        return self._factor * energy
-
-    def stiffness(self) -> csc_array | None:
-        matrix = self._energy.stiffness()
-        return None if matrix is None else csc_array(self._factor * matrix)
-
-    def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
-        return csc_array(self._factor * self._energy.hessian(x, definite=definite))
-
-
-def _equilibrium(
-    sheet: ElasticSheet,
-    potential: Potential,
-    x: FloatArray,
-    tolerance: float,
-    max_iterations: int,
-) -> Equilibrium:
-    """Newton's method; where a stiff membrane makes it crawl, first with a softer one.
-
-    A thin sheet swings along arcs that Newton's straight steps stretch, so the line search allows
-    only short ones. A softer membrane lets it swing; its shape is close to the right one.
-    """
-    kick = _KICK * sheet.thickness.max()
-    few = min(_PATIENCE, max_iterations)
-    direct = newton(potential, x, max_iterations=few, tolerance=tolerance, kick=kick)
-    if direct.residual <= tolerance and direct.stable:
-        return direct
-    for factor in _SOFTENING:
-        soft = (_Softened(sheet.membrane, factor), sheet.bending)
-        eased = Potential(soft, potential.others, potential.free)
-        x = newton(eased, x, max_iterations=max_iterations, tolerance=1e-2, kick=kick).x
-    return newton(potential, x, max_iterations=max_iterations, tolerance=tolerance, kick=kick)
 
 
 def _moved(

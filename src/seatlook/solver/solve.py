@@ -11,7 +11,9 @@ import numpy as np
 
 from seatlook import __version__
 from seatlook.errors import ConvergenceError, InputError
-from seatlook.model import Cover, Solution
+from seatlook.model import Cover, FloatArray, Solution
+from seatlook.solver.explicit import Explicit
+from seatlook.solver.method import MethodName, method_of
 from seatlook.solver.process import Process, Record
 from seatlook.solver.stages import Step, check_stages, schedule
 from seatlook.solver.verdict import figures, reasons, unrest
@@ -21,6 +23,7 @@ _ROUNDS = 40  # of settling, each with the inertia of a time step twice as long
 _LONGER = 10.0  # than a time step, the first of them
 _REST_ITERATIONS = 300  # of one round
 _MOST_ITERATIONS = 10_000  # of all rounds
+_KICK, _KICKS = 0.5, 5  # thickness; how often an unstable balance is left
 _REFACTOR = 2  # time steps that share a factor
 
 
@@ -41,14 +44,16 @@ def solve(
     progress: Progress | None = None,
     start: Solution | None = None,
     snapshot: Callable[[Solution], None] | None = None,
+    shape: Callable[[str, float, FloatArray], None] | None = None,
+    method: MethodName | Explicit = "lbfgs",
     dt: float = 0.02,
     iterations: int = 12,
 ) -> Solution:
     """Carry out the stages of a cover and let it come to rest.
 
     Damped backward Euler; every step minimises one potential (inertia, sheet, weight, foam,
-    lagged friction, ties) by L-BFGS with a prefactored matrix, then the static balance is sought
-    with friction and tie forces updated until they agree with the shape.
+    lagged friction, ties), then the static balance is sought with friction and tie forces updated
+    until they agree with the shape.
 
     Parameters
     ----------
@@ -56,8 +61,13 @@ def solve(
     progress : called after every step
     start : earlier solution of the same mesh; the process goes on after its stage
     snapshot : called with the state at the end of every stage
-    dt : float [s]      time step
-    iterations : int    most L-BFGS iterations in a time step
+    shape : called with stage, time [s] and positions (n, 3) [m] after every time step; the
+        positions are those the solver goes on with, so copy what is kept
+    method : "lbfgs" with a prefactored matrix; "newton", which at rest counts the directions that
+        lead downhill and leaves an unstable balance; "explicit" central differences with the time
+        step their mesh allows, or ``Explicit(time_step=..., scale_mass=True)``
+    dt : float [s]      time step; what lags is updated once in it
+    iterations : int    most iterations in a time step
 
     Returns
     -------
@@ -71,11 +81,12 @@ def solve(
     InputError              a tie names a stage that is not planned, the foam is not closed
     InvertedElementError    a triangle without area, before or after
     SolverError             the energy is not a number
+    UnstableStepError       the explicit time step is longer than the mesh allows
     ConvergenceError        only with ``strict``; carries the last Solution
     """
     check_stages(cover)
     clock = time.process_time()
-    process = Process(cover, dt=dt, iterations=iterations)
+    process = Process(cover, dt=dt, iterations=iterations, method=method_of(method))
     plan = schedule(cover.stages, dt)
     ahead = plan if start is None else _after(plan, start, cover)
     if start is not None:
@@ -87,11 +98,13 @@ def solve(
             process.begin()
         refactor = first or plan.index(step) % _REFACTOR == 0
         run.add(step.stage, process.step(step, refactor=refactor))
+        if shape is not None:
+            shape(step.stage, step.time, process.x)
         last = i + 1 == len(ahead) or ahead[i + 1].stage != step.stage
         if last and snapshot is not None:
             snapshot(run.solution(step.stage, ["settling has not been done"]))
-    run.settle()
-    solution = run.solution(_REST, reasons(process, run.records[-1]))
+    why = run.settle()
+    solution = run.solution(_REST, [*reasons(process, run.records[-1]), *why])
     if strict and solution.status != "converged":
         raise ConvergenceError(solution.reason, solution)
     return solution
@@ -122,10 +135,24 @@ class _Run:
                 gap=record.seam_gap,
             )
 
-    def settle(self) -> None:
-        """Repeat the static solve until all that lags agrees with the shape."""
+    def settle(self) -> list[str]:
+        """Come to rest; with Newton's method leave balances that are unstable, or say so."""
         process = self.process
         process.begin(rest=True)
+        self._rest()
+        if process.method != "newton":
+            return []
+        kick = _KICK * float(process.cover.thickness.max())
+        for _ in range(_KICKS):
+            if not process.downhill(kick):
+                return []
+            self._rest()
+        left = process.downhill()
+        return [f"unstable: {left} directions lead downhill"] if left else []
+
+    def _rest(self) -> None:
+        """Repeat the static solve until all that lags agrees with the shape."""
+        process = self.process
         record, spent, dt = process.record(), 0, _LONGER * process.dt
         for _ in range(_ROUNDS):
             left = min(_REST_ITERATIONS, _MOST_ITERATIONS - spent)
