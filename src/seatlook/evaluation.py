@@ -12,6 +12,7 @@ from seatlook import io, pbr
 from seatlook.assembly import assemble
 from seatlook.errors import InputError
 from seatlook.model import Camera, FloatArray, Limit, Scene, Solution, WrinkleMap
+from seatlook.model.scene import SCORE_MEASURES
 from seatlook.solver import solve
 from seatlook.solver.standoff import standoff
 from seatlook.wrinkle import (
@@ -80,7 +81,7 @@ class Evaluation:
 
     @property
     def accepted(self) -> bool:
-        """Whether every limit of the scene is kept."""
+        """Whether every limit on the indices is kept; ``study.scoring`` judges the others."""
         return all(v.kept for v in self.verdicts)
 
 
@@ -129,7 +130,11 @@ def evaluate(
                 "standoff": draw_standoff(solution, off, camera, out),
             }
         ),
-        verdicts=tuple(_judge(limit, scene, zones) for limit in scene.limits),
+        verdicts=tuple(
+            _judge(limit, scene, zones)
+            for limit in scene.limits
+            if limit.measure not in SCORE_MEASURES
+        ),
     )
 
 
@@ -158,10 +163,21 @@ def draw_pictures(
     for rig in scene.rigs:
         for name, appearance in scene.textures.items():
             say("render", rig=rig.name, texture=name)
-            path = f"images/{_slug(rig.name)}/{_slug(name)}.png"
+            path = picture_path(name, rig.name)
             pbr.render(solution, appearance, rig=rig, camera=camera).save(out / path)
             pictures[name, rig.name] = path
     return MappingProxyType(pictures)
+
+
+def picture_path(texture: str, rig: str) -> str:
+    """Path of a picture, relative to the folder of its evaluation.
+
+    Examples
+    --------
+    >>> picture_path("Suede 2", "bulb left")
+    'images/bulb-left/suede-2.png'
+    """
+    return f"images/{_slug(rig)}/{_slug(texture)}.png"
 
 
 def draw_maps(
