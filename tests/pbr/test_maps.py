@@ -9,7 +9,7 @@ from pbr_scenes import above, flat, sheet
 from seatlook.errors import InputError
 from seatlook.pbr import render_map
 from seatlook.pbr.exposure import srgb_encode
-from seatlook.pbr.maps import COLORMAPS, _table
+from seatlook.pbr.maps import COLORMAPS, colour_table
 
 pytestmark = pytest.mark.render
 CAMERA = above(size=(160, 120), fov=20)
@@ -25,14 +25,14 @@ def left_to_right(solution):
 
 
 def code(name, position):
-    table = _table(name)
+    table = colour_table(name)
     return 255 * srgb_encode(table[round(position * (len(table) - 1))])
 
 
 @pytest.mark.parametrize("name", COLORMAPS)
 def test_lightness_is_even(name):
     """CIE lightness along the bar: rising by even steps, or even on both sides of the middle."""
-    y = _table(name) @ [0.2126, 0.7152, 0.0722]
+    y = colour_table(name) @ [0.2126, 0.7152, 0.0722]
     lightness = 116 * np.where(y > 0.008856, np.cbrt(y), 7.787 * y + 16 / 116) - 16
     step = np.diff(lightness)
     if name == "diverging":

@@ -186,7 +186,8 @@ def test_a_grid_names_the_worst_rig_and_the_least_visible_texture(view):
         for n, a in (("across", 90), ("along", 0))
     )
     ladder = Ladder(height=1e-4, heights=np.array([0, 1e-4]), vwi=np.array([0, 50.0]))
-    grid = score_grid(view, {"black": BLACK, "rough": ROUGH}, (along, across), ladder=ladder)
+    grid = score_grid(view, {"black": BLACK, "rough": ROUGH}, (along, across)).on_ladder(ladder)
+    assert grid.worst_texture("along") == ("black", "rough")[int(grid.vwi[:, 0].argmax())]
     assert grid.vwi.shape == (2, 2)
     assert grid.worst_rig("rough") == "across"
     assert grid.least_visible == ("black", "rough")[int(grid.vwi.max(axis=1).argmin())]

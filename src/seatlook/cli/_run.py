@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from seatlook.assembly.ease import SeamEase
     from seatlook.evaluation import Evaluation
-    from seatlook.model import Scene, Solution
+    from seatlook.model import Camera, Scene, Solution
     from seatlook.wrinkle import ZoneRow
 
 SceneFile = Annotated[Path, Parameter(help="Scene file (TOML).")]
@@ -185,15 +185,7 @@ def render(
 
     offscreen_backend()
     read = load(scene)
-    cameras = {camera.name: camera for camera in read.cameras}
-    rigs = {r.name: r for r in read.rigs}
-    looks = _chosen("--texture", texture, read.textures)
-    chosen = replace(
-        read,
-        rigs=tuple(rigs[name] for name in _chosen("--rig", rig, rigs)),
-        textures=MappingProxyType({name: read.textures[name] for name in looks}),
-    )
-    camera = cameras[_chosen("--view", (view,) if view else (), cameras)[0]]
+    chosen, camera = narrowed(read, texture, rig), camera_of(read, view)
     solution = result_of(read, result)
     with progress() as show:
         draw_pictures(chosen, solution, camera, out, show)
@@ -226,6 +218,23 @@ def result_of(scene: Scene, path: Path) -> Solution:
     if solution.cover.scene_digest != scene.digest:
         say(f"{path}: solved for another state of {scene.path}; its shape is shown as it was")
     return solution
+
+
+def narrowed(scene: Scene, textures: tuple[str, ...], rigs: tuple[str, ...]) -> Scene:
+    """Keep the textures and rigs named on the command line; all where none is."""
+    known = {rig.name: rig for rig in scene.rigs}
+    looks = _chosen("--texture", textures, scene.textures)
+    return replace(
+        scene,
+        rigs=tuple(known[name] for name in _chosen("--rig", rigs, known)),
+        textures=MappingProxyType({name: scene.textures[name] for name in looks}),
+    )
+
+
+def camera_of(scene: Scene, view: str | None) -> Camera:
+    """Return the camera of a name, the first if none is given."""
+    known = {camera.name: camera for camera in scene.cameras}
+    return known[_chosen("--view", (view,) if view else (), known)[0]]
 
 
 def _chosen(option: str, names: tuple[str, ...], known: Iterable[str]) -> tuple[str, ...]:

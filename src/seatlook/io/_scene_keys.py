@@ -16,7 +16,7 @@ from seatlook.io._schema import (
     Texts,
 )
 from seatlook.io._views import CAMERA, RIG
-from seatlook.model.scene import MEASURES
+from seatlook.model.scene import MEASURES, SCORE_MEASURES
 
 AS_BUILT = "as built"
 _NAME = Text(required=True)
@@ -118,5 +118,5 @@ KEYS: dict[str, Kind] = {
             "c_threshold_per_mm": Number(above=0, scale=1 / MM),
         }
     ),
-    "accept": Named(Table(dict.fromkeys(MEASURES, Number(low=0)))),
+    "accept": Named(Table(dict.fromkeys((*MEASURES, *SCORE_MEASURES), Number(low=0)))),
 }

@@ -13,6 +13,7 @@ from seatlook.io._scene_checks import line_length
 from seatlook.io._schema import known
 from seatlook.io._toml import Document, Key
 from seatlook.model import Foam, Frame, Hook, Limit, Pattern, Stage, ZoneBox
+from seatlook.model.scene import SCORE_MEASURES
 from seatlook.zones import FREE_EDGE, zones
 
 Row = dict[str, Any]
@@ -126,6 +127,14 @@ def make_limits(
         for zone in rows:
             choices = [name for name in names if name != FREE_EDGE]
             known(document, ("accept", zone), zone, choices, "a zone or a class of boxes")
+    for zone, row in rows.items():
+        for measure in SCORE_MEASURES:
+            if row[measure] is not None and zone.startswith("seam "):
+                document.report(
+                    ("accept", zone, measure),
+                    "a seam band",
+                    "an interior, a box or a class: a score leaves seams out",
+                )
     return tuple(
         Limit(zone=zone, measure=measure, maximum=maximum)
         for zone, row in rows.items()

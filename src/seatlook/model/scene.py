@@ -20,6 +20,8 @@ CurvatureMode = Literal["paper", "tensor"]
 
 # What [accept] can limit: fields of a zone's row in the table of wrinkle indices.
 MEASURES = ("w2_mean", "w2_p95", "w2_area_share", "w_stretch_mean", "w_compression_mean")
+# And what the score of a zone gives, worst over all textures and rigs.
+SCORE_MEASURES = ("vwi", "equivalent_height_mm")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -22,7 +23,8 @@ class Grid:
     Parameters
     ----------
     sights : (texture, rig) -> Sight, every cell
-    height : (texture, rig) -> equivalent height [m] on black leather; empty without a ladder
+    height : (texture, rig) -> equivalent height [m] on black leather, inf above the ladder; empty
+        without one
     """
 
     textures: tuple[str, ...]
@@ -40,6 +42,15 @@ class Grid:
             ]
         )
 
+    def on_ladder(self, ladder: Ladder) -> Grid:
+        """Return the same grid with equivalent heights."""
+        height = {cell: ladder.equivalent(s.score.vwi) for cell, s in self.sights.items()}
+        return replace(self, height=MappingProxyType(height))
+
+    def worst_texture(self, rig: str) -> str:
+        """Texture that shows wrinkles most under a rig."""
+        return self.textures[int(self.vwi[:, self.rigs.index(rig)].argmax())]
+
     def worst_rig(self, texture: str) -> str:
         """Rig under which a texture shows wrinkles most."""
         return self.rigs[int(self.vwi[self.textures.index(texture)].argmax())]
@@ -53,6 +64,15 @@ class Grid:
         """Say which of two textures shows more under a rig, if all measures agree."""
         return more_visible(self.sights[first, rig].measures, self.sights[second, rig].measures)
 
+    def not_separable(self) -> tuple[tuple[str, str, str], ...]:
+        """Pairs of textures (first, second, rig) that the measures order differently."""
+        return tuple(
+            (first, second, rig)
+            for rig in self.rigs
+            for first, second in itertools.combinations(self.textures, 2)
+            if self.compare(first, second, rig) == "not separable"
+        )
+
 
 def score_grid(
     view: View,
@@ -60,7 +80,6 @@ def score_grid(
     rigs: Sequence[Rig],
     *,
     indices: WrinkleMap | None = None,
-    ladder: Ladder | None = None,
 ) -> Grid:
     """Score every texture under every rig.
 
@@ -81,14 +100,9 @@ def score_grid(
         for rig in rigs
         for name, looks in textures.items()
     }
-    height = (
-        {}
-        if ladder is None
-        else {cell: ladder.equivalent(sight.score.vwi) for cell, sight in sights.items()}
-    )
     return Grid(
         textures=tuple(textures),
         rigs=names,
         sights=MappingProxyType(sights),
-        height=MappingProxyType(height),
+        height=MappingProxyType({}),
     )
