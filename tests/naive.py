@@ -25,9 +25,13 @@ def quadratic(matrix, x):
     return 0.5 * float((x * (matrix @ x)).sum()), matrix @ x
 
 
-def conormal_slopes(X, ends, start, nodes, values):
-    """Slope across every edge from a weighted least-squares quadratic through the edge's ends."""
+def conormal_slopes(X, ends, start, nodes, values, ridge):
+    """Mean slope across every edge from a weighted least-squares cubic through the edge's ends.
+
+    Its cubic terms are held near zero by ``ridge``.
+    """
     out = np.empty(len(ends))
+    hold = np.eye(8)[:4] * np.sqrt(ridge)
     for e, (p, q) in enumerate(ends):
         along = X[q] - X[p]
         length = np.hypot(*along)
@@ -36,9 +40,11 @@ def conormal_slopes(X, ends, start, nodes, values):
         others = nodes[start[e] + 2 : start[e + 1]]
         r = (X[others] - 0.5 * (X[p] + X[q])) / length
         s, d = r @ t, r @ n
-        A = np.stack([0.5 * (s**2 - 0.25), s * d, 0.5 * d**2, d], axis=1)
+        cubic = [s * (s**2 - 0.25) / 6, d * (s**2 - 1 / 12) / 2, s * d**2 / 2, d**3 / 6]
+        A = np.stack([*cubic, 0.5 * (s**2 - 0.25), s * d, 0.5 * d**2, d], axis=1)
         w = np.sqrt(1.0 / ((r**2).sum(axis=1) + 0.05))
         mean, rise = 0.5 * (values[p] + values[q]), values[q] - values[p]
-        right = values[others] - mean - rise * s
-        out[e] = np.linalg.lstsq(A * w[:, None], right * w, rcond=None)[0][3] / length
+        right = np.concatenate([np.zeros(4), (values[others] - mean - rise * s) * w])
+        left = np.concatenate([hold, A * w[:, None]])
+        out[e] = np.linalg.lstsq(left, right, rcond=None)[0][7] / length
     return out

@@ -67,9 +67,11 @@ def test_winkler_load(kind, edges, bar, report):
 
 @pytest.mark.parametrize("kind", meshes.KINDS)
 def test_false_bending(kind, report):
-    c = [false_bending(kind, n) for n in (8, 16)]
-    report(f"{kind}: c {c[0]:+.5f} {c[1]:+.5f}")
-    assert max(map(abs, c)) <= (3e-3 if kind == "sliver" else 1e-3)
+    angles = (0.0, 20.0, 45.0, 80.0, 130.0)
+    worst = [max((false_bending(kind, n, degrees=d) for d in angles), key=abs) for n in (8, 16)]
+    report(f"{kind}: c of the worst of five directions {worst[0]:+.5f} {worst[1]:+.5f}")
+    # The bar is that of unstructured meshes; the others are bound with their own figures.
+    assert max(map(abs, worst)) <= {"uns": 1e-3, "sliver": 3e-3}.get(kind, 2e-3)
 
 
 @pytest.mark.parametrize("kind", meshes.KINDS)
@@ -81,14 +83,15 @@ def test_lateral_buckling(kind, slenderness, report):
     assert load == pytest.approx({0.02: 12.85, 0.05: 13.33}[slenderness], rel=0.03)
 
 
-@pytest.mark.parametrize("kind", FAIR)
+@pytest.mark.parametrize("kind", meshes.KINDS)
 def test_sine_sheet(kind, report):
     raw8, better8 = sine_curvature_error(kind, 8)
     raw16, better16 = sine_curvature_error(kind, 16)
     report(f"{kind}: raw {raw8:.3f} {raw16:.3f}, recovered {better8:.3f} {better16:.3f}")
-    if kind == "uns":
-        assert better8 <= 0.08
-        assert better16 <= 0.04
+    assert better8 <= 0.08
+    assert better16 <= 0.04
+    assert raw16 <= 0.08
+    assert raw8 <= (0.16 if kind in ("alt", "sliver") else 0.15)
 
 
 def half_space(sheet, X, modulus, waves):

@@ -68,6 +68,7 @@ class ElasticSheet:
         stiffness = np.stack([f.bending_matrix for f in fabrics])[panel]
         if hem is not None:
             density, stiffness = density + hem.density, stiffness + hem.bending
+        self.rigidity = np.maximum(stiffness[:, 0, 0], stiffness[:, 1, 1])
         self.mass = np.bincount(
             faces.ravel(), np.repeat(density * self.area / 3.0, 3), minlength=len(rest)
         )
@@ -100,7 +101,7 @@ class ElasticSheet:
     def stiffness(self, include_bending: bool = False) -> csc_array:
         """Constant scalar matrix (n, n) [N/m] that stands for the sheet in a prefactor."""
         if include_bending:
-            return csc_array(self.membrane.stiffness() + self.bending.stiffness())
+            return csc_array(self.membrane.stiffness() + self.across())
         return self.membrane.stiffness()
 
     def curvatures(self, x: FloatArray) -> FloatArray:
@@ -115,11 +116,13 @@ class ElasticSheet:
         """Return smoother kappa of every triangle, (m, 2, 2) [1/m].
 
         Averaged over each vertex's triangles and back, which halves the scatter but flattens
-        waves; what the same averaging takes from the result is put back once.
+        waves; what the same averaging takes from the result is put back twice.
         """
-        vertex = self._at_vertices(self.curvatures(x))
-        lost = vertex - self._at_vertices(vertex[self.faces].mean(axis=1))
-        return np.asarray((vertex + lost)[self.faces].mean(axis=1))
+        part = total = self._at_vertices(self.curvatures(x))
+        for _ in range(2):
+            part = part - self._at_vertices(part[self.faces].mean(axis=1))
+            total = total + part
+        return np.asarray(total[self.faces].mean(axis=1))
 
     def strains(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Green strain on the top, mid and bottom surface, each (m, 2, 2) in warp/weft axes [1].
