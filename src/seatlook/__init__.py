@@ -11,6 +11,7 @@ __version__ = "0.1.0"
 _PUBLIC: dict[str, str] = {
     "Camera": "seatlook.model",
     "Cover": "seatlook.model",
+    "Comparison": "seatlook.report.comparison",
     "Evaluation": "seatlook.evaluation",
     "InputError": "seatlook.errors",
     "Rig": "seatlook.model",
@@ -20,6 +21,7 @@ _PUBLIC: dict[str, str] = {
     "WrinkleMap": "seatlook.model",
     "assemble": "seatlook.assembly",
     "bulb": "seatlook.model",
+    "compare": "seatlook.report.comparison",
     "evaluate": "seatlook.evaluation",
     "load_scene": "seatlook.io",
     "named_view": "seatlook.model",

@@ -103,7 +103,7 @@ def _threads(advice: list[str]) -> list[tuple[str, int]]:
         advice.append(
             f"more threads ({algebra}) than cores: set OMP_NUM_THREADS={os.cpu_count()} or less"
         )
-    return [("kernel threads", int(numba.config.NUMBA_NUM_THREADS)), ("algebra threads", algebra)]
+    return [("kernel threads", numba.get_num_threads()), ("algebra threads", algebra)]
 
 
 def _cache(advice: list[str]) -> list[tuple[str, object]]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import PurePosixPath
 from types import MappingProxyType
 
 from seatlook.errors import InputError
+from seatlook.report.chart import number
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,13 +61,21 @@ class Table:
     rows: tuple[tuple[str | float | int | None, ...], ...]
 
     def __post_init__(self) -> None:
-        for number, row in enumerate(self.rows):
+        for count, row in enumerate(self.rows):
             if len(row) != len(self.heads):
                 raise InputError.single(
-                    f"table row {number}",
+                    f"table row {count}",
                     got=f"{len(row)} cells",
                     expected=f"{len(self.heads)}: {', '.join(self.heads)}",
                 )
+
+    def _repr_html_(self) -> str:
+        heads = "".join(f"<th>{escape(head)}</th>" for head in self.heads)
+        rows = "".join(
+            "<tr>" + "".join(f"<td>{escape(number(value))}</td>" for value in row) + "</tr>"
+            for row in self.rows
+        )
+        return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,6 +103,7 @@ class PageData:
     pictures : (texture, rig name) -> path relative to the page; one for every cell
     maps : W1, W2, W_stretch, W_compression, ...
     zones : one row per zone
+    differences : what a table compares -> the table; stands first on a page of several variants
     seams : one row per seam: its two lengths and the ease between them
     shape : one row per zone: how far it stands off the foam
     parameters : what they belong to -> table of keys, values and sources
@@ -116,6 +127,7 @@ class PageData:
     parameters: MappingProxyType[str, Table]
     provenance: MappingProxyType[str, str]
     status: str
+    differences: MappingProxyType[str, Table] = field(default_factory=lambda: MappingProxyType({}))
     seams: Table | None = None
     shape: Table | None = None
     checks: tuple[Check, ...] = ()

@@ -69,7 +69,7 @@ def page_data(evaluation: Evaluation) -> PageData:
         size=evaluation.camera.size,
         pixels_per_degree=evaluation.camera.pixels_per_degree,
         textures=tuple(scene.textures),
-        rigs=tuple(_head(rig) for rig in scene.rigs),
+        rigs=tuple(rig_head(rig) for rig in scene.rigs),
         pictures=evaluation.pictures,
         maps=tuple(_maps(evaluation)),
         zones=_zones(evaluation),
@@ -90,7 +90,8 @@ def page_data(evaluation: Evaluation) -> PageData:
     )
 
 
-def _head(rig: Rig) -> RigHead:
+def rig_head(rig: Rig) -> RigHead:
+    """Describe a rig by its exposure, lux at the seat and lights."""
     lights = [_described(light) for light in rig.lights]
     if rig.ambient > 0:
         lights.append(f"sky, {number(rig.ambient)} cd/m2")

@@ -110,7 +110,7 @@ class _Sewing:
         for name in self.left:
             following.setdefault(self.corner(name, end=False), []).append(name)
         for name in self.left:
-            run = (name,)
+            run: tuple[str, ...] = (name,)
             yield run
             while len(run) < _RUN:
                 ahead = following.get(self.corner(run[-1], end=True), [])
