@@ -9,7 +9,15 @@ import numpy as np
 
 from seatlook import mesh
 from seatlook.assembly.ease import seam_ease
-from seatlook.assembly.lines import Line, anchor_on, curve_of, join, line_through, stitches
+from seatlook.assembly.lines import (
+    Line,
+    anchor_on,
+    curve_of,
+    join,
+    line_through,
+    rings_on,
+    stitches,
+)
 from seatlook.model import (
     Anchor,
     FloatArray,
@@ -140,7 +148,7 @@ class Builder:
         seams = {s.name: s for s in self.pattern.seams}
         line = self.edge(seams[hook.line].a) if hook.line in seams else self._lines[hook.line]
         wire = scene.foam.curves[hook.wire]
-        return anchor_on([line], curve_of(wire), x, name=hook.name, kind="hook", stage=hook.stage)
+        return rings_on(line, hook, curve_of(wire), x)
 
     def frame(self, frame: Frame, scene: Scene, x: FloatArray) -> Anchor:
         """Pull free edges to a curve below the foam."""

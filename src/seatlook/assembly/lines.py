@@ -8,7 +8,9 @@ from typing import Literal
 
 import numpy as np
 
-from seatlook.model import Anchor, FloatArray, IntArray, Points
+from seatlook.model import Anchor, FloatArray, Hook, IntArray, Points
+
+_ON_LINE = 1e-6  # m; a vertex that near an end of the hooked part belongs to it
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,17 +85,55 @@ def anchor_on(
     """
     before = np.cumsum([0.0, *(ln.length for ln in lines)])
     points = join([ln.points(ln.arc) for ln in lines])
-    share = np.concatenate([b + ln.arc for b, ln in zip(before, lines, strict=False)]) / before[-1]
+    at = np.concatenate([b + ln.arc for b, ln in zip(before, lines, strict=False)])
     steps = [np.concatenate([[0.0], np.diff(ln.arc), [0.0]]) / 2 for ln in lines]
-    start = points.at(x)
-    target, turned = curve(share), curve(1.0 - share)
-    if np.linalg.norm(turned - start) < np.linalg.norm(target - start):
-        target = turned
     return Anchor(
         name=name,
         kind=kind,
         points=points,
-        target=target,
+        target=_shorter_way(curve, at / before[-1], points.at(x)),
         length=np.concatenate([step[:-1] + step[1:] for step in steps]),
         stage=stage,
+        at=at,
     )
+
+
+def rings_on(
+    line: Line, hook: Hook, curve: Callable[[FloatArray], FloatArray], x: FloatArray
+) -> Anchor:
+    """Pull a line to its wire: its vertices, or hog rings at the hook's pitch.
+
+    A point at a share of the whole line's length goes to that share of the whole wire, whatever
+    part of the line is pulled. Rings stand at both ends of that part and at equal steps between
+    them, as near to the pitch as that allows, but not closer than the line's vertices.
+    """
+    end = line.length if hook.end is None else min(hook.end, line.length)
+    if hook.pitch is None:
+        at = line.arc[(line.arc >= hook.start - _ON_LINE) & (line.arc <= end + _ON_LINE)]
+        if len(at) < 2:
+            at = np.array([hook.start, end])
+    else:
+        pitch = max(hook.pitch, line.spacing)
+        at = np.linspace(hook.start, end, max(1, round((end - hook.start) / pitch)) + 1)
+    step = np.concatenate([[0.0], np.diff(at), [0.0]]) / 2
+    points = line.points(at)
+    return Anchor(
+        name=hook.name,
+        kind="hook",
+        points=points,
+        target=_shorter_way(curve, at / line.length, points.at(x)),
+        length=step[:-1] + step[1:],
+        stage=hook.stage,
+        at=at,
+        limit=hook.limit,
+    )
+
+
+def _shorter_way(
+    curve: Callable[[FloatArray], FloatArray], share: FloatArray, start: FloatArray
+) -> FloatArray:
+    """Points of the curve at shares of its length, from that end which is nearer to ``start``."""
+    target, turned = curve(share), curve(1.0 - share)
+    if np.linalg.norm(turned - start) < np.linalg.norm(target - start):
+        return turned
+    return target

@@ -68,7 +68,6 @@ class ElasticSheet:
         stiffness = np.stack([f.bending_matrix for f in fabrics])[panel]
         if hem is not None:
             density, stiffness = density + hem.density, stiffness + hem.bending
-        self.rigidity = np.maximum(stiffness[:, 0, 0], stiffness[:, 1, 1])
         self.mass = np.bincount(
             faces.ravel(), np.repeat(density * self.area / 3.0, 3), minlength=len(rest)
         )

@@ -74,8 +74,12 @@ class Process:
         self.panel[cover.faces] = cover.panel[:, None]
         tension = np.array([np.sqrt(f.warp.stiffness[0] * f.weft.stiffness[0]) for f in fabrics])
         self._tension = tension
-        softness = self.sheet.rigidity / (tension[cover.panel] * cover.element_size**2)
-        self._bending_in_factor = bool(softness.max() > _STIFF_BENDING)
+        softness = max(
+            max(f.bending_warp, f.bending_weft) / (k * cover.element_size**2)
+            for f, k in zip(fabrics, tension, strict=True)
+        )
+        # Folds and second layers are stiff where seams are tied: without them every step is too long.
+        self._bending_in_factor = cover.hem is not None or softness > _STIFF_BENDING
         self._mass: FloatArray = np.array(self.sheet.mass, dtype=np.float64)
         self.gravity = Gravity(self._mass)
         self.inertia = Inertia(self._mass, dt)

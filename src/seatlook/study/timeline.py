@@ -9,10 +9,11 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from seatlook import __version__, io
 from seatlook.errors import InputError, did_you_mean
-from seatlook.model import Anchor, Cover, Solution, Stage, Stitching
+from seatlook.model import Anchor, Cover, FloatArray, Solution, Stage, Stitching
 from seatlook.solver import solve
 from seatlook.solver.solve import Progress
 
@@ -35,7 +36,7 @@ def solve_in_stages(
 
     Parameters
     ----------
-    folder : for ``1-sew.npz``, ``2-hook.npz``, ...
+    folder : for ``1-sew.npz``, ``2-hook.npz``, ... and the shapes on the way, ``shapes/1-sew.npz``
     again_from : stage to do again, with all after it, from the snapshot before it
         What was sewn or tied earlier must not have changed; what comes later, and the foam, may.
     resume : go on from the last snapshot of this very cover, if there is one
@@ -59,11 +60,22 @@ def solve_in_stages(
     elif resume:
         start = _last_of(cover, folder)
     order = stage_order(cover)
+    times: list[float] = []
+    shapes: list[npt.NDArray[np.float32]] = []
+
+    def see(stage: str, time: float, positions: FloatArray) -> None:
+        del stage
+        times.append(time)
+        shapes.append(positions.astype(np.float32))
 
     def keep(state: Solution) -> None:
+        # Before the snapshot: where that is, the stage's shapes are as well.
+        io.write_shapes(folder / shapes_name(cover, state.stage), times, np.stack(shapes))
+        times.clear()
+        shapes.clear()
         io.write_result(joined(start, state), folder / snapshot_name(order, state.stage))
 
-    return joined(start, solve(cover, progress=progress, start=start, snapshot=keep))
+    return joined(start, solve(cover, progress=progress, start=start, snapshot=keep, shape=see))
 
 
 def stage_order(cover: Cover) -> list[str]:
@@ -81,6 +93,11 @@ def snapshot_name(order: list[str], stage: str) -> str:
     """
     slug = "".join(c if c.isalnum() else "-" for c in stage.lower())
     return f"{order.index(stage) + 1}-{slug}.npz"
+
+
+def shapes_name(cover: Cover, stage: str) -> str:
+    """Name of the file of the shapes that the cover goes through in a stage."""
+    return f"shapes/{snapshot_name(stage_order(cover), stage)}"
 
 
 def joined(start: Solution | None, after: Solution) -> Solution:

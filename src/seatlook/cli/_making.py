@@ -1,0 +1,99 @@
+"""Commands that show how a cover was made: its stages in pictures, its hooks ring by ring."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, fields
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from seatlook.cli._output import Json, say, table
+from seatlook.cli._run import Out, ResultFile, SceneFile, load, result_of
+from seatlook.errors import InputError, did_you_mean
+
+
+def timeline(
+    scene: SceneFile,
+    result: ResultFile,
+    /,
+    *,
+    out: Out,
+    rig: str | None = None,
+    view: str | None = None,
+    width: int = 480,
+    seconds: float = 6.0,
+) -> None:
+    """Draw a cover in the making: timeline.png, a picture per stage, and timeline.gif.
+
+    The result must have been solved with --stages: what lies beside it is drawn.
+
+    Example: seatlook timeline seat.toml seat.npz --out pictures
+
+    Parameters
+    ----------
+    rig
+        Rig of the scene. The first if not given.
+    view
+        Camera of the scene. The first if not given; it steps back until all panels are in view.
+    width
+        Of one picture, in pixels.
+    seconds
+        How long the animation lasts.
+    """
+    from seatlook.pbr import offscreen_backend
+    from seatlook.study.film import film
+
+    offscreen_backend()
+    read = load(scene)
+    rigs = {r.name: r for r in read.rigs}
+    cameras = {camera.name: camera for camera in read.cameras}
+    for option, name, known in (("--rig", rig, rigs), ("--view", view, cameras)):
+        if name is not None and name not in known:
+            expected = f"one of {', '.join(known)}"
+            hint = did_you_mean(name, known)
+            raise InputError.single(option, got=repr(name), expected=expected, hint=hint)
+    paths = film(
+        result_of(read, result),
+        result.with_suffix(".stages"),
+        out,
+        rig=rigs[rig] if rig else read.rigs[0],
+        camera=cameras[view] if view else read.cameras[0],
+        width=width,
+        seconds=seconds,
+    )
+    say(*(f"wrote {path}" for path in paths))
+
+
+def hooks(
+    result: ResultFile,
+    /,
+    *,
+    csv: Annotated[Path | None, Parameter(help="File for the table as CSV.")] = None,
+    json: Json = False,
+) -> int:
+    """Print what every hog ring pulls with; ends with 1 if one pulls harder than its limit.
+
+    Example: seatlook hooks seat.npz --csv hooks.csv
+    """
+    from seatlook import io
+    from seatlook.solver.hooks import RingPull, overpulled, ring_pulls
+
+    solution = io.read_result(result)
+    units = {"at": ("at_mm", 1e3), "gap": ("gap_mm", 1e3), "pull": ("pull_n", 1.0)}
+    units |= {"limit": ("limit_n", 1.0), **{k: (f"{k}_mm", 1e3) for k in "xyz"}}
+    names = [f.name for f in fields(RingPull)]
+    heads = [units.get(name, (name, 1.0))[0] for name in names]
+    rows = [
+        tuple(
+            value * units[name][1] if name in units and value is not None else value
+            for name, value in zip(names, astuple(ring), strict=True)
+        )
+        for ring in ring_pulls(solution)
+    ]
+    table(heads, rows, json=json)
+    if csv is not None:
+        io.write_table(csv, heads, rows)
+    over = overpulled(solution)
+    say(*over)
+    return int(bool(over))
