@@ -82,8 +82,11 @@ def distance_field(
     band = np.where(far, -1, nearest)
     index = ndimage.distance_transform_edt(far, return_distances=False, return_indices=True)
     nearest = np.ascontiguousarray(nearest[tuple(index)])
+    before = np.ones(shape, dtype=np.bool_)
     for _ in range(_PASSES):
-        kernel.improve(vertices, faces, grid, distance2, nearest, band)
+        changed = np.zeros(shape, dtype=np.bool_)
+        kernel.improve(vertices, faces, grid, distance2, nearest, band, before, changed)
+        before = changed
     phi = np.sqrt(distance2) * np.where(_inside(vertices, faces, grid, shape), -1.0, 1.0)
     coefficients = ndimage.spline_filter(phi, order=3, mode="mirror")
     return DistanceField(coefficients, grid, float((high - low).min()))

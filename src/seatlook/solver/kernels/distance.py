@@ -69,8 +69,11 @@ def fill_band(vertices, faces, grid, band, distance2, nearest):
 
 
 @njit(cache=True)
-def improve(vertices, faces, grid, distance2, nearest, start):
-    """Let nodes outside the band (``start`` < 0) try the nearest faces of their neighbours."""
+def improve(vertices, faces, grid, distance2, nearest, start, before, changed):
+    """Let nodes outside the band (``start`` < 0) try the nearest faces of their neighbours.
+
+    Only where one of them has changed since, in the pass ``before`` or in this one.
+    """
     p = np.empty(3)
     nx, ny, nz = nearest.shape
     for i in range(nx):
@@ -79,6 +82,19 @@ def improve(vertices, faces, grid, distance2, nearest, start):
             p[1] = grid[1] + j * grid[3]
             for k in range(nz):
                 if start[i, j, k] >= 0:
+                    continue
+                if not (
+                    before[i, j, k]
+                    or before[max(i - 1, 0), j, k]
+                    or before[min(i + 1, nx - 1), j, k]
+                    or before[i, max(j - 1, 0), k]
+                    or before[i, min(j + 1, ny - 1), k]
+                    or before[i, j, max(k - 1, 0)]
+                    or before[i, j, min(k + 1, nz - 1)]
+                    or changed[max(i - 1, 0), j, k]
+                    or changed[i, max(j - 1, 0), k]
+                    or changed[i, j, max(k - 1, 0)]
+                ):
                     continue
                 p[2] = grid[2] + k * grid[3]
                 own = -1
@@ -101,6 +117,7 @@ def improve(vertices, faces, grid, distance2, nearest, start):
                     if d2 < distance2[i, j, k]:
                         distance2[i, j, k] = d2
                         nearest[i, j, k] = f
+                        changed[i, j, k] |= s >= 0
                     own = nearest[i, j, k]
 
 
