@@ -122,3 +122,17 @@ def test_foam_in_millimetres_is_refused():
     vertices, faces = sphere(50.0, 2)
     with pytest.raises(InputError, match="is it in the right unit"):
         distance_field(vertices, faces)
+
+
+def test_a_field_is_kept_under_the_content_of_its_surface():
+    v, f = sphere(0.05, 2)
+    first = distance_field(v, f, spacing=0.01)
+    assert distance_field(v.copy(), f.copy(), spacing=0.01) is first
+    moved = distance_field(v * 1.001, f, spacing=0.01)
+    assert moved is not first
+    assert distance_field(v, f, spacing=0.012) is not first
+    assert distance_field(v * 1.001, f, spacing=0.01) is moved
+    # Two are kept: the first has gone, and comes back equal.
+    again = distance_field(v, f, spacing=0.01)
+    assert again is not first
+    assert again.coefficients.tobytes() == first.coefficients.tobytes()

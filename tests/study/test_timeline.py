@@ -68,7 +68,11 @@ def assert_same_bits(a, b):
 def test_every_stage_leaves_a_snapshot(whole):
     solution, folder = whole
     assert stage_order(solution.cover) == ["sew", "hook", "cover"]
-    assert sorted(p.name for p in folder.glob("*.npz")) == ["1-sew.npz", "2-hook.npz", "3-cover.npz"]
+    assert sorted(p.name for p in folder.glob("*.npz")) == [
+        "1-sew.npz",
+        "2-hook.npz",
+        "3-cover.npz",
+    ]
     ends = [io.read_result(p).history["time"][-1] for p in sorted(folder.glob("*.npz"))]
     assert ends == pytest.approx([0.1, 0.2, 0.3])
     assert solution.stage == "at rest"

@@ -199,10 +199,11 @@ def load(
     element_size_mm: float | None = None,
     changes: tuple[str, ...] = (),
 ) -> Scene:
-    """Read a scene, with what the command line overrides."""
+    """Read a scene, with what the command line overrides and poses for panels that have none."""
     from seatlook import io
+    from seatlook.study.placing import placed
 
-    scene: Scene = io.load_scene(path, changes=changes)
+    scene: Scene = placed(io.load_scene(path, changes=changes))
     return replace(
         scene,
         seed=scene.seed if seed is None else seed,

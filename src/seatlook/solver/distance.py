@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections import OrderedDict
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,13 +42,18 @@ class DistanceField:
         return phi, gradient
 
 
+_KEPT = 2  # fields of one evaluation: the foam, and what the finished shape is compared with
+_fields: OrderedDict[str, DistanceField] = OrderedDict()
+
+
 def distance_field(
     vertices: FloatArray, faces: IntArray, *, spacing: float = 0.004, margin: float = 0.02
 ) -> DistanceField:
     """Signed distance of a closed surface with outward normals.
 
     Exact point-triangle distances near the surface, the nearest face carried on beyond, sign from
-    the winding number along vertical lines, then cubic B-spline interpolation, which is C2.
+    the winding number along vertical lines, then cubic B-spline interpolation, which is C2. The
+    last two fields are kept under the content of their surfaces: asked again, they cost nothing.
 
     Parameters
     ----------
@@ -59,6 +66,22 @@ def distance_field(
     InputError
         The surface is not closed, turned inside out, or too large for the spacing (wrong unit?).
     """
+    key = _digest(vertices, faces, spacing, margin)
+    if key not in _fields:
+        _fields[key] = _built(vertices, faces, spacing, margin)
+        if len(_fields) > _KEPT:
+            _fields.popitem(last=False)
+    _fields.move_to_end(key)
+    return _fields[key]
+
+
+def _digest(vertices: FloatArray, faces: IntArray, spacing: float, margin: float) -> str:
+    parts = (vertices.astype(float), faces.astype(np.int64), np.array([spacing, margin]))
+    content = (f"{part.shape}".encode() + part.tobytes() for part in parts)
+    return hashlib.sha256(b"".join(content)).hexdigest()
+
+
+def _built(vertices: FloatArray, faces: IntArray, spacing: float, margin: float) -> DistanceField:
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     pad = margin + 4 * spacing
     size = np.ceil((high - low + 2 * pad) / spacing).astype(np.int64) + 1
