@@ -1,6 +1,6 @@
 """The command line: ``seatlook demo | check | evaluate | ...``."""
 
-from seatlook.cli import _compare, _demo, _init, _machine, _making, _run, _score, _solve, _wrinkle
+from seatlook.cli import _compare, _demo, _init, _machine, _making, _panel, _run, _score, _solve, _wrinkle
 from seatlook.cli._app import app, main, run
 
 __all__ = ["app", "main", "run"]
@@ -19,3 +19,4 @@ app.command(_run.render)
 app.command(_machine.materials)
 app.command(_machine.doctor)
 app.command(_score.score)
+app.command(_panel.panel)

@@ -7,17 +7,16 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from seatlook import files
 from seatlook.model import Camera, FloatArray, direction
 from seatlook.report.chart import number
+from seatlook.report.page import environment
 from seatlook.study.light_search import LOWEST_DEG, WorstLight
 
 RADIUS = 200.0  # of the rim, in SVG units
 _STEP_DEG = 5.0
 _POWER = 4.0  # of the distance, in the mean between lights tried
-_TEMPLATES = Path(__file__).parent / "templates"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,31 +44,27 @@ def write_light_chart(worst: WorstLight, camera: Camera, path: Path, *, title: s
     Between the lights tried the colour is a mean weighted by distance, so that the chart claims no
     value that no light had.
     """
-    environment = Environment(
-        loader=FileSystemLoader(_TEMPLATES),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["number"] = number
     low, high = float(worst.tried[:, 2].min()), float(worst.tried[:, 2].max())
     eye = camera.position - camera.target
-    text = environment.get_template("light.svg.j2").render(
-        title=title,
-        radius=RADIUS,
-        low=low,
-        high=high,
-        patches=_patches(worst.tried, low, high),
-        marks=[_mark(*row, low, high) for row in worst.tried.tolist()],
-        worst=_mark(worst.azimuth_deg, worst.elevation_deg, worst.vwi, low, high),
-        worst_angles=(worst.azimuth_deg, worst.elevation_deg),
-        eye=place(
-            float(np.degrees(np.arctan2(eye[0], -eye[1]))),
-            float(np.degrees(np.arcsin(eye[2] / np.linalg.norm(eye)))),
-        ),
-        rings=[(e, place(0.0, e)[1]) for e in (30, 60)],
-        bar=[_colour(share) for share in np.linspace(0.0, 1.0, 32)],
+    text = (
+        environment()
+        .get_template("light.svg.j2")
+        .render(
+            title=title,
+            radius=RADIUS,
+            low=low,
+            high=high,
+            patches=_patches(worst.tried, low, high),
+            marks=[_mark(*row, low, high) for row in worst.tried.tolist()],
+            worst=_mark(worst.azimuth_deg, worst.elevation_deg, worst.vwi, low, high),
+            worst_angles=(worst.azimuth_deg, worst.elevation_deg),
+            eye=place(
+                float(np.degrees(np.arctan2(eye[0], -eye[1]))),
+                float(np.degrees(np.arcsin(eye[2] / np.linalg.norm(eye)))),
+            ),
+            rings=[(e, place(0.0, e)[1]) for e in (30, 60)],
+            bar=[_colour(share) for share in np.linspace(0.0, 1.0, 32)],
+        )
     )
     files.write_text(path, text)
 

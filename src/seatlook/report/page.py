@@ -52,25 +52,34 @@ def page_html(data: PageData) -> str:
     """Return the page as text."""
     style = (_TEMPLATES / "page.css").read_text(encoding="utf-8")
     script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
-    environment = Environment(
+    return (
+        environment()
+        .get_template("page.html.j2")
+        .render(
+            page=data,
+            policy=content_policy(style, script),
+            style=Markup(style),
+            script=Markup(script),
+            charts=history_charts(data.history),
+            chart_size=(WIDTH, HEIGHT),
+        )
+    )
+
+
+def environment() -> Environment:
+    """Templates of pages and charts; every text is escaped."""
+    made = Environment(
         loader=FileSystemLoader(_TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["number"] = number
-    return environment.get_template("page.html.j2").render(
-        page=data,
-        policy=_policy(style, script),
-        style=Markup(style),
-        script=Markup(script),
-        charts=history_charts(data.history),
-        chart_size=(WIDTH, HEIGHT),
-    )
+    made.filters["number"] = number
+    return made
 
 
-def _policy(style: str, script: str) -> str:
+def content_policy(style: str, script: str) -> str:
     """Content policy: nothing but the page's own style, script and images."""
     return (
         "default-src 'none'; img-src 'self'; base-uri 'none'; form-action 'none'; "
