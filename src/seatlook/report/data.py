@@ -6,9 +6,13 @@ from dataclasses import dataclass, field
 from html import escape
 from pathlib import PurePosixPath
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from seatlook.errors import InputError
 from seatlook.report.chart import number
+
+if TYPE_CHECKING:
+    from seatlook.report.wrinkles import WrinkleSection
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,6 +110,7 @@ class PageData:
     differences : what a table compares -> the table; stands first on a page of several variants
     seams : one row per seam: its two lengths and the ease between them
     shape : one row per zone: how far it stands off the foam
+    wrinkles : the worst wrinkles and the distortion of the texture
     parameters : what they belong to -> table of keys, values and sources
     provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
     checks : solver conditions and accept limits
@@ -130,6 +135,7 @@ class PageData:
     differences: MappingProxyType[str, Table] = field(default_factory=lambda: MappingProxyType({}))
     seams: Table | None = None
     shape: Table | None = None
+    wrinkles: WrinkleSection | None = None
     checks: tuple[Check, ...] = ()
     warnings: tuple[str, ...] = ()
     history: MappingProxyType[str, tuple[float, ...]] = field(
@@ -156,4 +162,5 @@ class PageData:
     @property
     def images(self) -> tuple[str, ...]:
         """Every image the page shows."""
-        return (*self.pictures.values(), *(view.image for view in self.maps))
+        further = self.wrinkles.maps if self.wrinkles else ()
+        return (*self.pictures.values(), *(view.image for view in (*self.maps, *further)))

@@ -17,6 +17,7 @@ from seatlook.report.chart import number
 from seatlook.report.data import Check, MapView, PageData, RigHead, Table
 from seatlook.report.page import write_page
 from seatlook.report.parameters import parameter_tables
+from seatlook.report.wrinkles import wrinkle_section
 from seatlook.solver import foam_wavelength, verdict
 from seatlook.solver.process import RESIDUAL
 from seatlook.solver.standoff import zone_standoff
@@ -63,6 +64,7 @@ def page_data(evaluation: Evaluation) -> PageData:
     waves = {
         m.name: foam_wavelength(m.fabric, scene.foam.material) for m in solution.cover.materials
     }
+    wrinkles = wrinkle_section(evaluation)
     return PageData(
         title=scene.name,
         camera=evaluation.camera.name,
@@ -78,6 +80,7 @@ def page_data(evaluation: Evaluation) -> PageData:
         status=solution.status,
         seams=seam_table(scene),
         shape=_shape(evaluation),
+        wrinkles=wrinkles,
         checks=(*_conditions(solution), *_limits(evaluation)),
         warnings=tuple(_warnings(evaluation, waves)),
         history=MappingProxyType(
@@ -86,7 +89,7 @@ def page_data(evaluation: Evaluation) -> PageData:
                 for column, (name, factor) in _CHARTED.items()
             }
         ),
-        files=(RESULT, "zones.csv"),
+        files=(RESULT, "zones.csv", *wrinkles.files),
     )
 
 
@@ -136,6 +139,8 @@ def _zones(evaluation: Evaluation) -> Table:
             "W_stretch mean",
             "W_compression mean",
             "stretch [% of W2]",
+            "W2 net mean",
+            "W2 net above 1 [% of area]",
             "W2 error",
             "h [mm]",
         ),
@@ -149,6 +154,8 @@ def _zones(evaluation: Evaluation) -> Table:
                 row.w_stretch_mean,
                 row.w_compression_mean,
                 100 * row.stretch_share,
+                row.w2_net_mean,
+                None if row.w2_net_area_share is None else 100 * row.w2_net_area_share,
                 row.w2_error,
                 1e3 * row.element_size,
             )

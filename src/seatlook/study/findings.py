@@ -128,12 +128,17 @@ def worst_row(rank: int, w: Wrinkle) -> dict[str, str | int | float | None]:
 
 
 def draw_findings(
-    findings: Findings, solution: Solution, camera: Camera, out: Path, say: Progress
+    findings: Findings,
+    solution: Solution,
+    camera: Camera,
+    out: Path,
+    say: Progress | None = None,
 ) -> MappingProxyType[str, tuple[str, Picture]]:
     """Draw the maps of distortion and a checker; return name -> (path below ``out``, picture)."""
     pictures = {}
     for name, (unit, factor, meaning) in DISTORTION_MAPS.items():
-        say("map", name=name)
+        if say is not None:
+            say("map", name=name)
         values = factor * DISTORTIONS[name](findings.distortion)
         end = round_end(values)
         picture = pbr.render_map(

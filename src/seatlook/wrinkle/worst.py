@@ -159,7 +159,11 @@ def _extent(corners: FloatArray, area: FloatArray) -> tuple[FloatArray, float, f
 
 
 def _nearest(cover: Cover, x: FloatArray, position: FloatArray) -> tuple[str, str, float]:
-    """Kind, name and distance of the nearest seam, hook or frame."""
+    """Kind, name and distance of the nearest seam, hook or frame.
+
+    A seam that is hooked lies on its hook: it is named rather than the hook, for its two lines can
+    be told apart.
+    """
     lines: list[tuple[str, str, Points]] = [
         ("seam", s.name, side) for s in cover.stitchings for side in (s.a, s.b)
     ]
@@ -171,7 +175,9 @@ def _nearest(cover: Cover, x: FloatArray, position: FloatArray) -> tuple[str, st
     ]
     if not found:
         return "", "", np.inf
-    distance, kind, name = min(found)
+    nearest = min(found)
+    beside = [f for f in found if f[1] == "seam" and f[0] <= nearest[0] + cover.element_size]
+    distance, kind, name = min(beside, default=nearest)
     return kind, name, distance
 
 
