@@ -20,7 +20,7 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
     Parameters
     ----------
     scene : Scene
-    element_size : float [m], optional      overrides the scene's
+    element_size : float [m], optional      overrides the scene's; panels' own scale with it
     seed : int, optional                    overrides the scene's; drives mesh and imperfection
 
     Returns
@@ -39,7 +39,9 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
     h = scene.element_size if element_size is None else element_size
     seed = scene.seed if seed is None else seed
     panels = scene.pattern.panels
-    builder = Builder(scene.pattern, h)
+    scale = h / scene.element_size
+    finer = {name: scale * size for name, size in scene.element_sizes.items()}
+    builder = Builder(scene.pattern, h, finer)
     for i, panel in enumerate(panels):
         builder.add(panel, _hooked_lines(scene.hooks, panel), seed=1000 * seed + i)
     uv, faces, owner = builder.arrays()

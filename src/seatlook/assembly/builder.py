@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -47,9 +48,11 @@ class _Rim:
 class Builder:
     """Collects the panels' meshes and finds vertex lines in them."""
 
-    def __init__(self, pattern: Pattern, element_size: float) -> None:
+    def __init__(
+        self, pattern: Pattern, element_size: float, own: Mapping[str, float] = MappingProxyType({})
+    ) -> None:
         self.pattern = pattern
-        self.h = element_size
+        self.size = {p.name: own.get(p.name, element_size) for p in pattern.panels}
         self._points: list[FloatArray] = []
         self._faces: list[IntArray] = []
         self._rims: dict[str, _Rim] = {}
@@ -57,20 +60,20 @@ class Builder:
 
     def add(self, panel: Panel, lines: dict[str, FloatArray], *, seed: int) -> None:
         """Mesh one panel; boundary vertices lie at equal arc lengths between kept corners."""
-        stops = self._stops(panel)
+        stops, h = self._stops(panel), self.size[panel.name]
         n = len(panel.outline)
         sampled: list[FloatArray] = []
         steps: list[float] = []
         place: dict[int, int] = {}
         for start, end in zip(stops, [*stops[1:], stops[0] + n], strict=True):
             span = panel.outline[np.arange(start, end + 1) % n]
-            points = mesh.resample(span, self.h)[:-1]
+            points = mesh.resample(span, h)[:-1]
             place[start] = len(steps)
             sampled.append(points)
             # Of the drawn span, not of the chords: both sides of a seam keep their scale.
             steps += len(points) * [mesh.arc_length(span)[-1] / len(points)]
-        inner = [mesh.resample(line, self.h) for line in lines.values()]
-        points, faces = mesh.triangulate(np.concatenate(sampled), self.h, lines=inner, seed=seed)
+        inner = [mesh.resample(line, h) for line in lines.values()]
+        points, faces = mesh.triangulate(np.concatenate(sampled), h, lines=inner, seed=seed)
         offset = sum(map(len, self._points))
         self._points.append(points)
         self._faces.append(faces + offset)
@@ -89,9 +92,9 @@ class Builder:
         behind = outline - np.roll(outline, 1, axis=0)
         cross = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
         turn = np.abs(np.arctan2(cross, (behind * ahead).sum(axis=1)))
-        stops = list(ends)
+        stops, closest = list(ends), self.size[panel.name] / 2
         for k in panel.corners:
-            near = stops and np.linalg.norm(outline[stops] - outline[k], axis=1).min() < self.h / 2
+            near = stops and np.linalg.norm(outline[stops] - outline[k], axis=1).min() < closest
             if turn[k] > CORNER and not near:
                 stops.append(int(k))
         return sorted(stops) or [int(np.argmax(turn))]

@@ -97,7 +97,9 @@ def hem_of(builder: Builder, scene: Scene, uv: FloatArray, faces: IntArray) -> H
         density[mine] = share * fabric.density
         vertices = np.flatnonzero(owner == i)
         distance, at = _nearest(sewn, uv[vertices])
-        lift[vertices] = fabric.thickness * _ramp(distance, sewn.width[at], builder.h)
+        lift[vertices] = fabric.thickness * _ramp(
+            distance, sewn.width[at], builder.size[panel.name]
+        )
     folds = _folds(builder, scene, uv)
     return Hem(bending=bending, density=density, lift=lift, **folds)
 

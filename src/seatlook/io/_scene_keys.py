@@ -62,7 +62,15 @@ KEYS: dict[str, Kind] = {
             }
         )
     ),
-    "panel": Named(Table({"material": Text(), "grain_deg": Number(low=-360, high=360)})),
+    "panel": Named(
+        Table(
+            {
+                "material": Text(),
+                "grain_deg": Number(low=-360, high=360),
+                "element_size_mm": Number(low=0.5, high=100, scale=MM),
+            }
+        )
+    ),
     "stage": Rows(
         Table(
             {

@@ -99,6 +99,9 @@ class _Reader:
             boxes=boxes,
             hem=row["hem"],
             element_size=row["mesh"]["element_size_mm"],
+            element_sizes=MappingProxyType(
+                {n: size for n, p in row["panel"].items() if (size := p["element_size_mm"])}
+            ),
             smallest_notch=row["mesh"]["smallest_notch_mm"],
             seed=row["mesh"]["seed"],
             curvature=curvature,

@@ -114,6 +114,7 @@ class Scene:
     materials : panel name -> Material
     placement : panel name -> Pose; a panel without one gets an automatic pose
     hem : whether seam allowances are folded inward; if not, seams are free hinges
+    element_sizes : panel name -> float [m]     of panels that are meshed finer or coarser
     element_size : float [m]; smallest_notch : float [m], below which reading closed cuts
     c_threshold : float [1/m]
     textures : name -> Appearance, or None for the panels' own materials
@@ -138,6 +139,9 @@ class Scene:
     limits: tuple[Limit, ...] = ()
     hem: bool = False
     element_size: float
+    element_sizes: MappingProxyType[str, float] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
     smallest_notch: float = 0.005
     seed: int = 0
     curvature: CurvatureMode = "tensor"
