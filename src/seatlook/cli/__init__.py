@@ -1,6 +1,18 @@
 """The command line: ``seatlook demo | check | evaluate | ...``."""
 
-from seatlook.cli import _compare, _demo, _init, _machine, _making, _panel, _run, _score, _solve, _wrinkle
+from seatlook.cli import (
+    _compare,
+    _demo,
+    _init,
+    _machine,
+    _making,
+    _panel,
+    _run,
+    _score,
+    _solve,
+    _sweep,
+    _wrinkle,
+)
 from seatlook.cli._app import app, main, run
 
 __all__ = ["app", "main", "run"]
@@ -15,6 +27,7 @@ app.command(_making.timeline)
 app.command(_making.hooks)
 app.command(_wrinkle.wrinkle)
 app.command(_compare.compare)
+app.command(_sweep.sweep)
 app.command(_run.render)
 app.command(_machine.materials)
 app.command(_machine.doctor)
