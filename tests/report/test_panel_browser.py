@@ -1,4 +1,4 @@
-"""The panel page in headless Chromium, from file:// and offline: by keyboard alone, and reloaded."""
+"""The panel page in headless Chromium, from file://, offline: by keyboard alone, and reloaded."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from seatlook.cli._output import Json, note, progress, table, template
-from seatlook.cli._run import Out, Resume, Seed, evaluate_scene, load
+from seatlook.cli._run import Out, Resume, Scored, Seed, evaluate_scene, load
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ def demo(
     element_size_mm: float = 7.0,
     seed: Seed = 0,
     resume: Resume = False,
+    score: Scored = True,
     json: Json = False,
 ) -> int:
     """Write the files of a seat cushion with a pattern that fits it, and evaluate them.
@@ -69,7 +70,7 @@ def demo(
         seed=seed or 0,
     )
     note(f"scene: {out / 'scene.toml'}")
-    return evaluate_scene(load(out / "scene.toml"), out, resume=resume, json=json)
+    return evaluate_scene(load(out / "scene.toml"), out, resume=resume, score=score, json=json)
 
 
 def flatten(

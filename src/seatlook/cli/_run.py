@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from seatlook.assembly.ease import SeamEase
     from seatlook.evaluation import Evaluation
     from seatlook.model import Camera, Scene, Solution
+    from seatlook.report import Check
     from seatlook.wrinkle import ZoneRow
 
 SceneFile = Annotated[Path, Parameter(help="Scene file (TOML).")]
@@ -41,6 +42,9 @@ Changes = Annotated[
         negative=(),
         help="KEY=VALUE over the scene's, such as mesh.seed=3; may be given more than once.",
     ),
+]
+Scored = Annotated[
+    bool, Parameter(help="Score how visible the wrinkles are, always where [accept] limits it.")
 ]
 Names = Annotated[tuple[str, ...], Parameter(negative=())]
 
@@ -110,6 +114,7 @@ def evaluate(
     element_size_mm: ElementSize = None,
     changes: Changes = (),
     resume: Resume = False,
+    score: Scored = True,
     dry_run: DryRun = False,
     json: Json = False,
 ) -> int:
@@ -123,7 +128,7 @@ def evaluate(
     read = load(scene, seed, element_size_mm, changes)
     if dry_run:
         return _list_cells(read, out, json=json)
-    return evaluate_scene(read, out, resume=resume, json=json)
+    return evaluate_scene(read, out, resume=resume, score=score, json=json)
 
 
 def _list_cells(scene: Scene, out: Path, *, json: bool) -> int:
@@ -143,17 +148,32 @@ def _list_cells(scene: Scene, out: Path, *, json: bool) -> int:
     return 0
 
 
-def evaluate_scene(scene: Scene, out: Path, *, resume: bool, json: bool) -> int:
+def evaluate_scene(scene: Scene, out: Path, *, resume: bool, score: bool, json: bool) -> int:
     """Evaluate a scene, print its zones and return the exit code."""
     from seatlook.evaluation import evaluate as run_chain
     from seatlook.report.gather import write_report
+    from seatlook.model.scene import SCORE_MEASURES
+    from seatlook.report.score import visibility
 
+    score = score or any(limit.measure in SCORE_MEASURES for limit in scene.limits)
     with progress() as show:
         evaluation = run_chain(scene, out, resume=resume, progress=show)
-    page = write_report(evaluation)
+        visible = visibility(evaluation, show) if score else None
+    page = write_report(evaluation, score=visible)
     print_zones(evaluation.zones, json=json)
     note(f"gallery: {page}")
-    return _exit_code(evaluation)
+    if visible and visible.refused:
+        say(f"no score: {visible.refused}")
+    kept = say_missed(visible.checks if visible else ())
+    return _exit_code(evaluation) or int(not kept)
+
+
+def say_missed(checks: Iterable[Check]) -> bool:
+    """Name every limit that is missed on stderr; return whether all are kept."""
+    missed = [check for check in checks if not check.kept]
+    for check in missed:
+        say(f"{check.name} is {check.value}, the limit is {check.limit}")
+    return not missed
 
 
 def render(

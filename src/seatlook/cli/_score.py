@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from seatlook.cli._output import Json, Say, progress, say, table
-from seatlook.cli._run import Names, SceneFile, camera_of, load, narrowed, result_of
+from seatlook.cli._output import Json, Say, progress, say, show_json, table
+from seatlook.cli._run import Names, SceneFile, camera_of, load, narrowed, result_of, say_missed
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.evaluation import Verdict
     from seatlook.model import Camera, Scene, Solution
     from seatlook.study.light_search import WorstLight
     from seatlook.study.scoring import SceneScore
@@ -68,6 +67,7 @@ def score(
     """
     from seatlook.evaluation import wrinkle_map
     from seatlook.pbr import offscreen_backend
+    from seatlook.report.score import score_checks
     from seatlook.study.scoring import score_scene
 
     if search_light and out is None:
@@ -91,19 +91,7 @@ def score(
             searches = _searches(read, solution, camera, out, show, mode=reference)
     _write(found, searches, out)
     _print(found, searches, json=json)
-    return int(not say_verdicts(found.verdicts))
-
-
-def say_verdicts(verdicts: tuple[Verdict, ...]) -> bool:
-    """Name every limit that is missed; return whether all are kept."""
-    for verdict in verdicts:
-        if not verdict.kept:
-            limit = verdict.limit
-            say(
-                f"{limit.zone}: {limit.measure} is {verdict.value:.4g}, "
-                f"the limit is {limit.maximum:.4g}"
-            )
-    return all(verdict.kept for verdict in verdicts)
+    return int(not say_missed(score_checks(found)))
 
 
 def _result_file(scene: Path, result: Path | None) -> Path:
@@ -170,7 +158,7 @@ def _print(found: SceneScore, searches: dict[str, dict[str, WorstLight]], *, jso
     )
 
     if json:
-        table(("what", "value"), list(score_values(found, searches).items()), json=True)
+        show_json(score_values(found, searches))
         return
     for part in (grid_table(found), zone_table(found), cause_table(found)):
         table(part.heads, part.rows, json=False)

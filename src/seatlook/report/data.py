@@ -93,6 +93,27 @@ class Check:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ScoreSection:
+    """What the page says about visibility; only ``refused`` is set where no score can be given.
+
+    Parameters
+    ----------
+    grid : a row per texture, a column per rig: VWI and equivalent height
+    causes : a row per cell: VWI over all, where W_stretch and where W_compression is, cross-checks
+    zones : a row per zone: worst VWI of each texture, and its equivalent height
+    sentences : what follows from them
+    """
+
+    grid: Table | None = None
+    causes: Table | None = None
+    zones: Table | None = None
+    sentences: tuple[str, ...] = ()
+    maps: tuple[MapView, ...] = ()
+    checks: tuple[Check, ...] = ()
+    refused: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PageData:
     """Everything on the page; ``write_page`` turns it into ``index.html``.
 
@@ -111,6 +132,7 @@ class PageData:
     seams : one row per seam: its two lengths and the ease between them
     shape : one row per zone: how far it stands off the foam
     wrinkles : the worst wrinkles and the distortion of the texture
+    score : how visible wrinkles are; None where nothing was scored
     parameters : what they belong to -> table of keys, values and sources
     provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
     checks : solver conditions and accept limits
@@ -136,6 +158,7 @@ class PageData:
     seams: Table | None = None
     shape: Table | None = None
     wrinkles: WrinkleSection | None = None
+    score: ScoreSection | None = None
     checks: tuple[Check, ...] = ()
     warnings: tuple[str, ...] = ()
     history: MappingProxyType[str, tuple[float, ...]] = field(
@@ -162,5 +185,6 @@ class PageData:
     @property
     def images(self) -> tuple[str, ...]:
         """Every image the page shows."""
-        further = self.wrinkles.maps if self.wrinkles else ()
+        sections = (section for section in (self.wrinkles, self.score) if section)
+        further = [view for section in sections for view in section.maps]
         return (*self.pictures.values(), *(view.image for view in (*self.maps, *further)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
@@ -14,7 +15,7 @@ from seatlook.evaluation import MAPS, RESULT, STANDOFF, Evaluation, label
 from seatlook.model import Light, Rig, Scene, Solution
 from seatlook.pbr import ev100, lux_at_seat, offscreen_backend
 from seatlook.report.chart import number
-from seatlook.report.data import Check, MapView, PageData, RigHead, Table
+from seatlook.report.data import Check, MapView, PageData, RigHead, ScoreSection, Table
 from seatlook.report.page import write_page
 from seatlook.report.parameters import parameter_tables
 from seatlook.report.wrinkles import wrinkle_section
@@ -53,9 +54,9 @@ _LOOSE_MESH = 8.0  # lambda / h below which the wrinkles' shape is not resolved
 _FINE_MESH = 12.0  # lambda / h from which the indices are
 
 
-def write_report(evaluation: Evaluation) -> Path:
+def write_report(evaluation: Evaluation, *, score: ScoreSection | None = None) -> Path:
     """Write the gallery page of an evaluation into its folder and return its path."""
-    return write_page(page_data(evaluation), evaluation.folder)
+    return write_page(replace(page_data(evaluation), score=score), evaluation.folder)
 
 
 def page_data(evaluation: Evaluation) -> PageData:

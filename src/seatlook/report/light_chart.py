@@ -55,7 +55,7 @@ def write_light_chart(worst: WorstLight, camera: Camera, path: Path, *, title: s
             low=low,
             high=high,
             patches=_patches(worst.tried, low, high),
-            marks=[_mark(*row, low, high) for row in worst.tried.tolist()],
+            marks=[_mark(a, e, vwi, low, high) for a, e, vwi in worst.tried.tolist()],
             worst=_mark(worst.azimuth_deg, worst.elevation_deg, worst.vwi, low, high),
             worst_angles=(worst.azimuth_deg, worst.elevation_deg),
             eye=place(

@@ -4,42 +4,46 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from seatlook.errors import InputError
+from seatlook.evaluation import Evaluation, Progress
+from seatlook.model import Limit
+from seatlook.model.scene import SCORE_MEASURES
 from seatlook.pbr.pixel_map import render_pixel_map
 from seatlook.report.chart import number
-from seatlook.report.data import Check, MapView, Table
+from seatlook.report.data import Check, MapView, ScoreSection, Table
 from seatlook.sensory.observer import OBSERVER
 from seatlook.study.light_search import WorstLight
-from seatlook.study.scoring import SceneScore
+from seatlook.study.scoring import SceneScore, score_scene
 from seatlook.study.view import NULL_LIMIT
 
 _LEAST_TOP = 3.0  # of a map's range: the first value of D that counts as visible
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScoreSection:
-    """What the page says about visibility; only ``refused`` is set where no score can be given.
+def visibility(evaluation: Evaluation, progress: Progress | None = None) -> ScoreSection:
+    """Score an evaluation for its page; what stands against a score is said instead of one.
 
-    Parameters
-    ----------
-    grid : a row per texture, a column per rig: VWI and equivalent height
-    causes : a row per cell: VWI over all, where W_stretch and where W_compression is, cross-checks
-    zones : a row per zone: worst VWI of each texture, and its equivalent height
-    sentences : what follows from them
+    Limits of [accept] on a score that cannot be given are missed.
     """
-
-    grid: Table | None = None
-    causes: Table | None = None
-    zones: Table | None = None
-    sentences: tuple[str, ...] = ()
-    maps: tuple[MapView, ...] = ()
-    checks: tuple[Check, ...] = ()
-    refused: str = ""
+    scene = evaluation.scene
+    try:
+        found = score_scene(
+            scene,
+            evaluation.solution,
+            evaluation.indices,
+            camera=evaluation.camera,
+            progress=progress,
+        )
+    except InputError as error:
+        limits = [limit for limit in scene.limits if limit.measure in SCORE_MEASURES]
+        return ScoreSection(
+            refused=str(error), checks=tuple(_check(limit, "no score", False) for limit in limits)
+        )
+    return score_section(found, evaluation.folder)
 
 
 def score_section(score: SceneScore, folder: Path) -> ScoreSection:
@@ -51,7 +55,7 @@ def score_section(score: SceneScore, folder: Path) -> ScoreSection:
         zones=zone_table(score),
         sentences=tuple(sentences(score)),
         maps=draw_maps(score, cells, folder),
-        checks=tuple(_checks(score)),
+        checks=score_checks(score),
     )
 
 
@@ -262,14 +266,15 @@ def _cell(score: SceneScore, texture: str, rig: str) -> str:
     return f"{number(score.grid.sights[texture, rig].score.vwi)}, {height}"
 
 
-def _checks(score: SceneScore) -> Iterator[Check]:
-    for found in score.verdicts:
-        yield Check(
-            name=f"{found.limit.zone}: {found.limit.measure}",
-            value=number(found.value),
-            limit=number(found.limit.maximum),
-            kept=found.kept,
-        )
+def score_checks(score: SceneScore) -> tuple[Check, ...]:
+    """Limits of [accept] on the score, and what was found."""
+    return tuple(_check(v.limit, number(v.value), v.kept) for v in score.verdicts)
+
+
+def _check(limit: Limit, value: str, kept: bool) -> Check:
+    return Check(
+        name=f"{limit.zone}: {limit.measure}", value=value, limit=number(limit.maximum), kept=kept
+    )
 
 
 def _slug(name: str) -> str:
