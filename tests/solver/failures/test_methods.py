@@ -1,0 +1,142 @@
+"""Where methods fail, and that it is said: time steps, iterations, unstable and snapping states."""
+
+import numpy as np
+import pytest
+
+import fabrics
+import meshes
+from counter_examples import position_based
+from covers import cover, flat_foam, sheet
+from seatlook import model
+from seatlook.solver import Explicit, solve, solve_sheet
+from seatlook.solver.elastic import ElasticSheet
+from seatlook.solver.explicit import UnstableStepError, stable_step
+from seatlook.solver.newton import Potential, newton
+from seatlook.solver.sheet import SheetError
+
+pytestmark = pytest.mark.failure
+
+
+def hanging(kind="uns", *, edges=8, thickness=0.02, stiffness_ratio=1.0, stretch=None, **options):
+    """Strip of length 1 and B = 1 that hangs from a clamp with Gamma = 1."""
+    X, T = meshes.rectangle(kind, 1.0, 0.25, 1.0 / edges)
+    stretch = 12.0 / thickness**2 if stretch is None else stretch
+    fabric = model.Fabric(
+        thickness=thickness,
+        density=1.0,
+        warp=model.Curve.linear(stretch * stiffness_ratio),
+        weft=model.Curve.linear(stretch),
+        shear=model.Curve.linear(0.5 * stretch),
+        bending_warp=1.0,
+        bending_weft=1.0,
+        bending_twist=0.5,
+    )
+    clamped = X[:, 0] < 1e-9
+    return X, solve_sheet(X, T, fabric, clamped=clamped, gravity=(0, 0, -1.0), **options)
+
+
+def explicit_limit(**options):
+    X, solved = hanging(method="newton", **options)
+    free = np.flatnonzero(np.repeat(X[:, 0] > 1e-9, 3))
+    hessian = sum(e.hessian(solved.positions, definite=True) for e in solved.sheet.energies)
+    return stable_step(
+        hessian.tocsr()[free][:, free].tocsc(), np.repeat(solved.sheet.mass, 3)[free]
+    )
+
+
+@pytest.mark.parametrize("thickness", [1e-1, 1e-3])
+def test_explicit_above_its_time_step(thickness):
+    limit = explicit_limit(thickness=thickness)
+    with pytest.raises(SheetError, match=r"grew without bound .* the mesh allows .* s: shorten"):
+        hanging(thickness=thickness, method=Explicit(time_step=1.3 * limit), max_iterations=400)
+    below = Explicit(time_step=0.9 * limit)
+    _, solved = hanging(thickness=thickness, method=below, max_iterations=4)
+    assert solved.reason.startswith("residual")
+
+
+def test_explicit_cover_above_its_time_step():
+    X, T, x = sheet(0.12, 0.12, 0.04, z=0.002, at=(-0.06, -0.06))
+    drop = model.Stage(name="drop", start=0.0, end=0.1)
+    c = cover([(X, T, x)], foam=flat_foam(), stages=[drop], h=0.04)
+    with pytest.raises(UnstableStepError, match="the mesh allows"):
+        solve(c, method=Explicit(time_step=1e-2))
+
+
+@pytest.mark.parametrize("thickness", [1e-1, 1e-2, 1e-3, 1e-4])
+def test_thickness(thickness):
+    """Newton converges over three decades; where L-BFGS does not, it says so."""
+    _, best = hanging(thickness=thickness, method="newton")
+    assert best.converged
+    _, other = hanging(thickness=thickness, method="lbfgs", max_iterations=1500)
+    if other.converged:
+        gap = np.linalg.norm(other.positions - best.positions, axis=1).max()
+        assert gap < 5e-3
+    else:
+        assert "residual" in other.reason
+        assert thickness <= 1e-3
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1e2, 1e5])
+def test_stiffness_ratio(ratio):
+    """Warp up to 1e5 times as stiff as weft."""
+    _, solved = hanging(stiffness_ratio=ratio, stretch=3e4, method="newton")
+    assert solved.converged, solved.reason
+    tip = solved.positions[:, 2].min()
+    assert tip == pytest.approx(-0.1235, abs=2e-3)
+
+
+@pytest.mark.parametrize("sweeps", [(20, 200)])
+def test_position_based_dynamics_depends_on_its_iterations(sweeps):
+    """Ten times the sweeps change the stretch of a hanging strip by more than its own size."""
+    X, T = meshes.rectangle("right", 1.0, 0.2, 0.05)
+    fabric = fabrics.isotropic(1e4, 1e-2, density=0.3)
+    x = np.pad(X, ((0, 0), (0, 1)))
+    true = 0.5 * 0.3 * 9.81 / 1e4
+    stretch = []
+    for iterations in sweeps:
+        moved = position_based(
+            X, T, fabric, x, X[:, 0] < 1e-9, (9.81, 0, 0), dt=1.0, iterations=iterations
+        )
+        stretch.append((moved[X[:, 0] > 1 - 1e-9, 0].mean() - 1.0) / true)
+    assert abs(stretch[0] - stretch[1]) > 1.0
+    assert abs(stretch[0] - 1.0) > 1.0
+
+
+def arch_states(method):
+    """Shallow arch between hinges, pressed at its crown until it has to snap."""
+    X, T = meshes.rectangle("right", 1.0, 0.1, 0.1)
+    fabric = fabrics.isotropic(1e4, 1e-2, thickness=0.01)
+    ends = (X[:, 0] < 1e-9) | (X[:, 0] > 1 - 1e-9)
+    pushed = np.pad(X * [0.99, 1.0], ((0, 0), (0, 1)))
+    pushed[:, 2] = 0.05 * np.sin(np.pi * X[:, 0])
+    options = {"fixed": ends, "method": method, "tolerance": 1e-3}
+    arch = solve_sheet(X, T, fabric, positions=pushed, strict=True, **options)
+    crown = np.abs(X[:, 0] - 0.5) < 0.01
+    loads = np.zeros((len(X), 3))
+    loads[crown, 2] = -6.0 / crown.sum()
+    down = solve_sheet(X, T, fabric, positions=arch.positions, loads=loads, **options)
+    return arch.positions[crown, 2].mean(), down.positions[crown, 2].mean(), down
+
+
+@pytest.mark.parametrize("method", ["newton", "lbfgs"])
+def test_snap_through(method):
+    before, after, solved = arch_states(method)
+    assert before > 0.05
+    assert after < -0.05
+    assert solved.converged, solved.reason
+    assert (np.diff(solved.energy) <= 1e-9 * abs(solved.energy[0])).all() or solved.kicks
+
+
+def test_flat_sheet_past_its_buckling_load_is_unstable_and_leaves():
+    X, T = meshes.rectangle("right", 1.0, 0.1, 0.1)
+    fabric = fabrics.isotropic(1e4, 1e-2)
+    body = ElasticSheet(X, T, np.zeros(len(T), dtype=np.int64), [fabric])
+    ends = (X[:, 0] < 1e-9) | (X[:, 0] > 1 - 1e-9)
+    flat = np.pad(X * [0.99, 1.0], ((0, 0), (0, 1)))
+    free = np.repeat(~ends[:, None], 3, axis=1)
+    stayed = newton(Potential(body.energies, (), free), flat, tolerance=1e-8)
+    assert stayed.downhill > 0
+    for method in ("newton", "lbfgs", "explicit"):
+        left = solve_sheet(X, T, fabric, positions=flat, fixed=ends, method=method, strict=True)
+        assert left.kicks >= 1
+        assert abs(left.positions[:, 2]).max() > 0.05
