@@ -24,7 +24,7 @@ _LONGER = 10.0  # than a time step, the first of them
 _REST_ITERATIONS = 300  # of one round
 _MOST_ITERATIONS = 10_000  # of all rounds
 _KICK, _KICKS = 0.5, 5  # thickness; how often an unstable balance is left
-_REFACTOR = 2  # time steps that share a factor
+_REFACTOR = 3  # time steps that share a factor
 
 
 class Progress(Protocol):
@@ -47,7 +47,7 @@ def solve(
     shape: Callable[[str, float, FloatArray], None] | None = None,
     method: MethodName | Explicit = "lbfgs",
     dt: float = 0.02,
-    iterations: int = 12,
+    iterations: int = 8,
 ) -> Solution:
     """Carry out the stages of a cover and let it come to rest.
 
