@@ -76,6 +76,16 @@ def test_units_and_hex_colour(write):
     assert material.appearance.texture_depth == pytest.approx(6e-5)
 
 
+def test_a_bending_radius_stands_for_the_threshold(write, problems):
+    text = LEATHER.replace("[appearance]", "first_wrinkle_radius_mm = 25.0\n[appearance]")
+    material = read_material(write("x.toml", text))
+    assert material.first_wrinkle_radius == pytest.approx(0.025)
+    assert material.c_threshold is None
+    both = text.replace("[appearance]", "c_threshold_per_mm = 0.03\n[appearance]")
+    (told,) = problems(read_material, write("y.toml", both))
+    assert "fabric.first_wrinkle_radius_mm: got c_threshold_per_mm as well" in told
+
+
 def test_constant_stiffness_is_a_curve_of_one_knot(write):
     fabric = read_material(write("x.toml", LEATHER)).fabric
     assert fabric.shear.strain.tolist() == [0.0]

@@ -1,5 +1,6 @@
 """The measures beside the paper's, on states whose answer is known."""
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -161,3 +162,18 @@ def test_a_million_states_have_no_surprise():
         assert ((w.r_stretch >= 0) & (w.r_stretch <= 1)).all()
         off = np.abs(w.w_stretch + w.w_compression - w.w2)
         assert (off <= 2 * np.spacing(w.w2)).all()
+
+
+def test_each_material_brings_its_own_threshold():
+    """By its curvature, by its bending radius in either mode, or not at all."""
+    cover = shaped(wave(0.0, 0.06), h=0.03, panels=3).cover
+    plain = cover.materials[0]
+    own = (
+        plain,
+        dataclasses.replace(plain, c_threshold=33.0),
+        dataclasses.replace(plain, first_wrinkle_radius=0.025),
+    )
+    cover = dataclasses.replace(cover, materials=own)
+    for mode, by_radius in (("tensor", 40.0), ("paper", 20.0)):
+        limits = wrinkle.thresholds(cover, mode, 15.0)
+        assert [set(limits[cover.panel == k]) for k in range(3)] == [{15.0}, {33.0}, {by_radius}]

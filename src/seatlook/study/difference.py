@@ -58,8 +58,8 @@ def difference(
     mine, theirs = solution.cover, other.cover
     if np.array_equal(mine.faces, theirs.faces) and mine.panel_names == theirs.panel_names:
         return values - other_values
-    carried = recover(theirs.faces, theirs.rest_area, other_values)
-    smooth = recover(mine.faces, mine.rest_area, values)[mine.faces].mean(axis=1)
+    carried = recover(theirs.rest, theirs.faces, other_values)
+    smooth = recover(mine.rest, mine.faces, values)[mine.faces].mean(axis=1)
     centre = mine.rest[mine.faces].mean(axis=1)
     out = np.full(len(values), np.nan)
     for number, name in enumerate(mine.panel_names):

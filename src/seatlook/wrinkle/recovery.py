@@ -2,59 +2,113 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
-from scipy.sparse import coo_array, csc_array, diags_array
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from seatlook.errors import InputError
 from seatlook.kinematics import deformation_gradient
-from seatlook.mesh import angles
+from seatlook.mesh import angles, face_areas
 from seatlook.model import Cover, FloatArray, IntArray
 from seatlook.wrinkle.jet import vertex_curvature
 
+_REGULAR = 0.02  # determinant of a patch's fit over that of orthogonal axes; below, it is a guess
 DESIGN_WAVELENGTH = 0.045  # [m] shorter waves are wrinkles, longer ones the shape that was drawn
 
 
-def recover(faces: IntArray, area: FloatArray, values: FloatArray) -> FloatArray:
+def recover(rest: FloatArray, faces: IntArray, values: FloatArray) -> FloatArray:
     """Carry values of faces to the vertices.
 
-    Means weighted by area, applied once more to what they miss: averaging over a patch lowers a
-    peak, and the second pass gives back what the first took. Panels share no vertices, so nothing
-    is averaged across a seam.
+    At each vertex a linear field is fitted to the faces around it, weighted by area
+    (superconvergent patch recovery, Zienkiewicz and Zhu 1992), and once more to what the first fit
+    misses: fitting over a patch lowers a peak, and the second pass gives back what the first took.
+    A plain mean would take the centre of a lopsided patch for the vertex. Panels share no vertices,
+    so nothing is carried across a seam.
 
     Parameters
     ----------
-    faces : (m, 3) int64; area : (m,) float64 [m2]
+    rest : (n, 2) float64 [m]; faces : (m, 3) int64
     values : (m, ...) float64     scalars or tensors, in axes that are the same for all faces
 
     Returns
     -------
-    (n, ...) float64, n the highest vertex of a face + 1; a vertex without a face has zeros
+    (n, ...) float64; a vertex without a face has zeros
     """
-    n = int(faces.max(initial=-1)) + 1
     flat = values.reshape(len(values), -1)
-    first = _mean(faces, area, flat, n)
-    full = first + _mean(faces, area, flat - first[faces].mean(axis=1), n)
-    return np.asarray(full.reshape(n, *values.shape[1:]))
+    patches = _Patches.of(rest, faces)
+    first = patches.at_vertices(flat)
+    full = first + patches.at_vertices(flat - first[faces].mean(axis=1))
+    return np.asarray(full.reshape(len(rest), *values.shape[1:]))
 
 
-def _mean(faces: IntArray, area: FloatArray, values: FloatArray, n: int) -> FloatArray:
-    weight = np.repeat(area, 3)
-    total = np.stack(
-        [np.bincount(faces.ravel(), np.repeat(c * area, 3), n) for c in values.T], axis=1
-    )
-    return np.asarray(total / np.maximum(np.bincount(faces.ravel(), weight, n), 1e-300)[:, None])
-
-
-def recovery_error(faces: IntArray, area: FloatArray, values: FloatArray) -> FloatArray:
+def recovery_error(rest: FloatArray, faces: IntArray, values: FloatArray) -> FloatArray:
     """Difference (m,) between a scalar per face and its mean over the patch around the face.
 
-    An estimate of the error of discretisation (Zienkiewicz and Zhu 1987): on a sine resolved by 8
-    to 24 elements its rms is 0.9 to 1.3 times the true one. The mean is applied once only; the
-    second pass of ``recover`` would follow the error itself.
+    An estimate of the error of discretisation (Zienkiewicz and Zhu 1987) on the safe side: on a
+    sine resolved by 8 to 24 elements its rms is 1.0 to 1.7 times the true one. The fit is made once
+    only; the second pass of ``recover`` would follow the error itself.
     """
-    at_vertices = _mean(faces, area, values[:, None], int(faces.max(initial=-1)) + 1)
+    at_vertices = _Patches.of(rest, faces).at_vertices(values[:, None])
     return np.asarray(values - at_vertices[faces].mean(axis=1)[:, 0])
+
+
+@dataclass(frozen=True, slots=True)
+class _Patches:
+    """Which faces each vertex looks at, and with which weight: rows of a matrix (n, m)."""
+
+    weights: csr_array
+
+    @classmethod
+    def of(cls, rest: FloatArray, faces: IntArray) -> _Patches:
+        """Fit a linear field around each vertex; with too few faces to the next ring as well."""
+        n, m = len(rest), len(faces)
+        touch = csr_array(
+            (np.ones(3 * m), (faces.ravel(), np.repeat(np.arange(m), 3))), shape=(n, m)
+        )
+        near = touch.tocoo()
+        vertex, face = near.row.astype(np.int64), near.col.astype(np.int64)
+        weight, good = _fit_weights(rest, faces, vertex, face)
+        lone = np.flatnonzero(~good & (np.diff(touch.indptr) > 0))
+        wide = (touch[lone] @ touch.T @ touch).tocoo()
+        keep = good[vertex]
+        vertex = np.concatenate([vertex[keep], lone[wide.row]])
+        face = np.concatenate([face[keep], wide.col.astype(np.int64)])
+        weight, _ = _fit_weights(rest, faces, vertex, face)
+        return cls(csr_array((weight, (vertex, face)), shape=(n, m)))
+
+    def at_vertices(self, values: FloatArray) -> FloatArray:
+        """Values (n, c) at the vertices from those (m, c) of the faces."""
+        return np.asarray(self.weights @ values)
+
+
+def _fit_weights(
+    rest: FloatArray, faces: IntArray, vertex: IntArray, face: IntArray
+) -> tuple[FloatArray, np.ndarray]:
+    """Weight of each pair in the value at the vertex; whether the patch fixes a linear field (n,).
+
+    Where it does not, the weights are those of the mean.
+    """
+    n, area = len(rest), face_areas(rest, faces)
+    w = area[face]
+    step = rest[faces].mean(axis=1)[face] - rest[vertex]
+    total = np.maximum(np.bincount(vertex, w, n), 1e-300)
+    size = np.sqrt(np.bincount(vertex, w * (step**2).sum(axis=1), n) / total)
+    u = step / np.maximum(size, 1e-300)[vertex, None]
+    basis = np.column_stack([np.ones(len(u)), u])
+    matrix = np.empty((n, 3, 3))
+    for i in range(3):
+        for j in range(i + 1):
+            matrix[:, i, j] = matrix[:, j, i] = (
+                np.bincount(vertex, w * basis[:, i] * basis[:, j], n) / total
+            )
+    diagonal = np.prod(np.diagonal(matrix, axis1=1, axis2=2), axis=1)
+    good = (np.linalg.det(matrix) > _REGULAR * diagonal) & (np.bincount(vertex, minlength=n) > 3)
+    first = np.zeros((n, 3))
+    first[:, 0] = 1.0
+    first[good] = np.linalg.inv(matrix[good])[:, 0]
+    return np.asarray(w / total[vertex] * np.einsum("pi,pi->p", first[vertex], basis)), good
 
 
 def low_passed(

@@ -50,7 +50,7 @@ def zone_table(
     """
     cover = solution.cover
     area = cover.rest_area
-    error = recovery_error(cover.faces, area, indices.w2)
+    error = recovery_error(cover.rest, cover.faces, indices.w2)
     corners = cover.rest[cover.faces]
     side = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean(axis=1)
     rows = []
