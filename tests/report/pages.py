@@ -10,13 +10,24 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook.report import Check, MapView, PageData, RigHead, Table
+from seatlook.report.data import ScoreSection, Spot
 
 SIZE = (64, 36)
 TEXTURES = ("black leather", "suede <insert>")
 RIGS = (
-    RigHead(name="sun", ev100=14.6, illuminance=97000.0, lights=("sun, 97 klx, elevation 70 deg",)),
     RigHead(
-        name="bulb_left", ev100=6.53, illuminance=64.0, lights=("bulb, 800 lm", "sky, 2 cd/m2")
+        name="sun",
+        ev100=14.6,
+        illuminance=97000.0,
+        lights=("sun, 97 klx, elevation 70 deg",),
+        places=(("sun", 200.0, 70.0, False),),
+    ),
+    RigHead(
+        name="bulb_left",
+        ev100=6.53,
+        illuminance=64.0,
+        lights=("bulb, 800 lm", "sky, 2 cd/m2"),
+        places=(("bulb", 115.0, 40.0, True),),
     ),
 )
 
@@ -62,6 +73,9 @@ def page_data(folder: Path, **changes: object) -> PageData:
     maps = []
     for k, name in enumerate(("W1", "W2", "W_stretch", "W_compression")):
         write_png(folder / f"maps/{name}.png", picture(100 + k))
+        alone = f"maps/{name}-own.png" if name.startswith("W_") else None
+        if alone:
+            write_png(folder / alone, picture(200 + k))
         maps.append(
             MapView(
                 name=name,
@@ -69,6 +83,8 @@ def page_data(folder: Path, **changes: object) -> PageData:
                 low=-1.5 if name == "W1" else 0.0,
                 high=1.5,
                 meaning="curvature over its threshold",
+                alone=alone,
+                alone_high=0.4,
             )
         )
     (folder / "zones.csv").write_text("zone,W2\n")
@@ -92,6 +108,15 @@ def page_data(folder: Path, **changes: object) -> PageData:
                     heads=("key", "value", "source"), rows=(("thickness_mm", "1.20", "judgement"),)
                 ),
             }
+        ),
+        "toml": MappingProxyType({"scene": "[mesh]\nseed = 0\n"}),
+        "spots": (Spot(label="wrinkle 1", x=50.0, y=20.0),),
+        "score": ScoreSection(
+            cells=MappingProxyType({cell: float(k) for k, cell in enumerate(pictures, 1)}),
+            **{
+                name: Table(heads=("texture", "VWI"), rows=(("suede <insert>", 3.0),))
+                for name in ("grid", "causes", "zones")
+            },
         ),
         "provenance": MappingProxyType({"seatlook": "0.1.0", "scene": "sha256 abc"}),
         "status": "converged",

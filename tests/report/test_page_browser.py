@@ -69,7 +69,7 @@ def pictures(page: Any) -> tuple[str, str]:
 
 def test_all_images_decode(page):
     assert all_images_decode(page)
-    assert page.locator("img").count() == 10
+    assert page.locator("img").count() == 13
 
 
 def test_the_slider_wipes_by_keyboard_and_by_mouse(page):
@@ -115,6 +115,151 @@ def test_blend_difference_and_size(page):
     assert page.locator("#cut").is_disabled()
     page.get_by_label("Size").select_option("2")
     assert page.evaluate("document.querySelector('#picture-a').clientWidth") == 2 * 64
+
+
+def test_holding_shows_b_only_as_long_as_it_is_held(page):
+    pressed = page.locator("#flip")
+    page.locator("#stage").focus()
+    page.keyboard.down(" ")
+    assert pressed.get_attribute("aria-pressed") == "true"
+    page.keyboard.up(" ")
+    assert pressed.get_attribute("aria-pressed") == "false"
+    page.locator("#hold").hover()
+    page.mouse.down()
+    assert pressed.get_attribute("aria-pressed") == "true"
+    page.mouse.up()
+    assert pressed.get_attribute("aria-pressed") == "false"
+
+
+def test_an_overlay_lies_over_both_with_its_opacity(page):
+    over = page.locator("#picture-o")
+    assert not over.is_visible()
+    assert page.locator("#opacity").is_disabled()
+    page.get_by_label("Overlay").select_option(label="W2")
+    page.locator("#opacity").focus()
+    page.keyboard.press("ArrowRight")
+    assert over.is_visible()
+    assert over.evaluate("image => image.style.opacity") == "0.51"
+    assert over.get_attribute("src").endswith("maps/W2.png")
+    assert "Over both: W2." in page.locator("#said").text_content()
+
+
+def test_the_dial_shows_a_under_another_light(page):
+    dial = page.locator(".dial")
+    assert dial.locator("[data-rig='sun']").get_attribute("aria-pressed") == "true"
+    page.locator("#choice-a").select_option(label="suede <insert>, sun")
+    dial.get_by_role("button", name="bulb_left: bulb, azimuth 115, elevation 40 degrees").click()
+    assert pictures(page)[0] == "A: suede <insert>, bulb_left"
+    dial.locator("[data-rig='sun']").focus()
+    page.keyboard.press("Enter")
+    assert pictures(page)[0] == "A: suede <insert>, sun"
+
+
+def test_the_grid_turns_and_back(page):
+    first = "document.querySelector('.grid').rows[1].cells[0].textContent"
+    heads = "[...document.querySelectorAll('.grid thead th')].map(h => h.scope).join()"
+    assert "black leather" in page.evaluate(first)
+    page.locator("#turn").click()
+    assert "sun" in page.evaluate(first)
+    assert page.evaluate("document.querySelector('.grid').rows.length") == 3
+    assert page.evaluate(heads) == "col,col,col"
+    page.locator("#stage").focus()
+    page.keyboard.press("t")
+    assert "black leather" in page.evaluate(first)
+    assert all_images_decode(page)
+
+
+def test_the_worst_light_and_cell_are_marked(page):
+    grid = page.locator(".grid")
+    assert "worst: bulb_left, VWI 4" in grid.locator("tbody th").nth(1).inner_text()
+    assert "worst: suede <insert>, VWI 3" in grid.locator("thead th").nth(1).inner_text()
+    assert grid.get_by_text("VWI 4: most visible of all").count() == 1
+
+
+def test_maps_take_a_range_of_their_own(page):
+    shown = "[...document.querySelectorAll('.maps img:not([hidden])')].map(i => i.src)"
+    assert all_images_decode(page)
+    said = page.locator("#maps .range").nth(2)
+    assert said.text_content() == "0 to 1.50"
+    page.locator("#shared").uncheck()
+    assert said.text_content() == "0 to 0.400"
+    assert page.evaluate(shown)[2].endswith("W_stretch-own.png")
+    page.locator("#shared").focus()
+    page.keyboard.press(" ")
+    assert said.text_content() == "0 to 1.50"
+    assert page.evaluate(shown)[2].endswith("W_stretch.png")
+
+
+def test_a_wrinkle_is_jumped_to(page):
+    page.get_by_role("button", name="wrinkle 1").click()
+    assert page.locator("#zoom").input_value() == "2"
+    assert page.locator("#spot").is_visible()
+    assert page.locator("#spot").evaluate("spot => [spot.style.left, spot.style.top]") == [
+        "100px",
+        "40px",
+    ]
+
+
+def test_size_is_marked_and_the_keys_change_it(page):
+    page.locator("#stage").focus()
+    assert "scores are for 1:1" in page.locator("#scale").text_content()
+    page.keyboard.press("1")
+    assert page.locator("#scale").text_content() == "1:1, as scored"
+    page.keyboard.press("+")
+    assert page.locator("#zoom").input_value() == "2"
+    page.keyboard.press("-")
+    page.keyboard.press("0")
+    assert page.locator("#zoom").input_value() == "fit"
+
+
+def test_a_large_picture_is_dragged(page):
+    page.get_by_label("Mode").select_option("difference")
+    page.evaluate("document.querySelector('#stage').style.width = '100px'")
+    page.get_by_label("Size").select_option("4")
+    page.locator("#stage").scroll_into_view_if_needed()
+    box = page.locator("#stage").bounding_box()
+    page.mouse.move(box["x"] + 80, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 30, box["y"] + 20)
+    page.mouse.up()
+    assert page.evaluate("document.querySelector('#stage').scrollLeft") == 50
+
+
+def test_the_list_of_keys_opens_and_closes(page):
+    page.keyboard.press("?")
+    assert page.locator("#keys").is_visible()
+    page.keyboard.press("Escape")
+    assert not page.locator("#keys").is_visible()
+    page.locator("#help").click()
+    page.get_by_role("button", name="Close").click()
+    assert not page.locator("#keys").is_visible()
+
+
+def test_parameters_are_copied_as_toml(browser, address):
+    context = browser.new_context(offline=True)
+    context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page = context.new_page()
+    page.goto(address)
+    page.get_by_role("button", name="Copy as TOML").click()
+    page.get_by_role("button", name="Copied").wait_for()
+    assert page.evaluate("navigator.clipboard.readText()") == "[mesh]\nseed = 0\n"
+    context.close()
+
+
+def test_one_file_alone_shows_everything(browser, tmp_path):
+    (tmp_path / "made").mkdir()
+    path = write_page(page_data(tmp_path / "made"), tmp_path / "made", single_file=True)
+    (tmp_path / "sent.html").write_bytes(path.read_bytes())
+    context = browser.new_context(offline=True)
+    page = context.new_page()
+    said: list[str] = []
+    page.on("console", lambda message: said.append(message.text))
+    page.goto((tmp_path / "sent.html").as_uri())
+    assert all_images_decode(page)
+    page.get_by_role("button", name="Show suede <insert> under sun as A").click()
+    assert pictures(page)[0] == "A: suede <insert>, sun"
+    assert said == []
+    context.close()
 
 
 def test_every_control_is_reached_by_tab(page):

@@ -34,6 +34,9 @@ Resume = Annotated[
     bool,
     Parameter(negative=(), help="Take the result in the folder if it is of this very scene."),
 ]
+SingleFile = Annotated[
+    bool, Parameter(negative=(), help="Put the images into index.html, to send it as one file.")
+]
 DryRun = Annotated[bool, Parameter(negative=(), help="List what would be made, and make nothing.")]
 Changes = Annotated[
     tuple[str, ...],
@@ -115,6 +118,7 @@ def evaluate(
     changes: Changes = (),
     resume: Resume = False,
     score: Scored = True,
+    single_file: SingleFile = False,
     dry_run: DryRun = False,
     json: Json = False,
 ) -> int:
@@ -128,7 +132,7 @@ def evaluate(
     read = load(scene, seed, element_size_mm, changes)
     if dry_run:
         return _list_cells(read, out, json=json)
-    return evaluate_scene(read, out, resume=resume, score=score, json=json)
+    return evaluate_scene(read, out, resume=resume, score=score, single_file=single_file, json=json)
 
 
 def _list_cells(scene: Scene, out: Path, *, json: bool) -> int:
@@ -148,7 +152,15 @@ def _list_cells(scene: Scene, out: Path, *, json: bool) -> int:
     return 0
 
 
-def evaluate_scene(scene: Scene, out: Path, *, resume: bool, score: bool, json: bool) -> int:
+def evaluate_scene(
+    scene: Scene,
+    out: Path,
+    *,
+    resume: bool,
+    score: bool,
+    json: bool,
+    single_file: bool = False,
+) -> int:
     """Evaluate a scene, print its zones and return the exit code."""
     from seatlook.evaluation import evaluate as run_chain
     from seatlook.report.gather import write_report
@@ -159,7 +171,7 @@ def evaluate_scene(scene: Scene, out: Path, *, resume: bool, score: bool, json: 
     with progress() as show:
         evaluation = run_chain(scene, out, resume=resume, progress=show)
         visible = visibility(evaluation, show) if score else None
-    page = write_report(evaluation, score=visible)
+    page = write_report(evaluation, score=visible, single_file=single_file)
     print_zones(evaluation.zones, json=json)
     note(f"gallery: {page}")
     if visible and visible.refused:

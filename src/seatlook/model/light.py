@@ -135,6 +135,9 @@ class Rig:
     Parameters
     ----------
     ambient : float [cd/m2]     luminance of a sky that is equal in all directions
+    panorama : (h, w, 3) float64 [cd/m2] or None
+        sky as a picture of all directions instead, linear sRGB: first row up, columns by azimuth
+        counter-clockwise seen from above, beginning at 0
     ev100 : float | None        None: from the lux on a grey card at the seat
     """
 
@@ -142,11 +145,24 @@ class Rig:
     lights: tuple[Light, ...]
     ambient: float = 0.0
     ev100: float | None = None
+    panorama: FloatArray | None = None
 
     def __post_init__(self) -> None:
-        if not self.lights and not self.ambient > 0:
-            raise InputError.single(f"rig {self.name}", got="no light", expected="a light or sky")
+        where = f"rig {self.name}"
+        if not self.lights and not self.ambient > 0 and self.panorama is None:
+            raise InputError.single(where, got="no light", expected="a light or sky")
         in_range(self, "ambient", 0.0, 1e6)
+        if self.panorama is None:
+            return
+        floats(self, "panorama", None, None, 3)
+        if self.ambient > 0:
+            raise InputError.single(where, got="ambient and panorama", expected="one of them")
+        if min(self.panorama.shape[:2]) < 4 or self.panorama.min() < 0:
+            raise InputError.single(
+                f"{where}: panorama",
+                got=f"{self.panorama.shape[:2]} pixels from {self.panorama.min():g}",
+                expected="at least 4 x 4 pixels, none below 0",
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -180,6 +196,25 @@ class Camera:
         half = np.radians(self.vertical_fov_deg) / 2
         horizontal = 2 * np.arctan(np.tan(half) * self.size[0] / self.size[1])
         return float(self.size[0] / np.degrees(horizontal))
+
+    def pixel(self, point: FloatArray) -> tuple[float, float]:
+        """Where a point (3,) [m] in front of the camera is seen: (x, y) from the top left.
+
+        Examples
+        --------
+        >>> named_view("top", target=np.zeros(3)).pixel(np.zeros(3))
+        (640.0, 360.0)
+        """
+        ahead = self.target - self.position
+        ahead = ahead / np.linalg.norm(ahead)
+        right = np.cross(ahead, self.up)
+        right = right / np.linalg.norm(right)
+        away = point - self.position
+        focal = self.size[1] / 2 / np.tan(np.radians(self.vertical_fov_deg) / 2)
+        depth = float(away @ ahead)
+        x = float(away @ right) / depth
+        y = float(away @ np.cross(right, ahead)) / depth
+        return float(self.size[0] / 2 + focal * x), float(self.size[1] / 2 - focal * y)
 
 
 def named_view(

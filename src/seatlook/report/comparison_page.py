@@ -23,7 +23,11 @@ _TABLES = {
 
 
 def write_comparison(
-    comparison: Comparison, folder: Path, *, progress: Progress | None = None
+    comparison: Comparison,
+    folder: Path,
+    *,
+    single_file: bool = False,
+    progress: Progress | None = None,
 ) -> Path:
     """Draw every cell and map into ``folder`` and write its ``index.html``.
 
@@ -67,7 +71,7 @@ def write_comparison(
         checks=tuple(_checks(comparison)),
         warnings=tuple(_warnings(comparison)),
     )
-    return write_page(data, folder)
+    return write_page(data, folder, single_file=single_file)
 
 
 def _maps(comparison: Comparison, folder: Path) -> Iterator[MapView]:

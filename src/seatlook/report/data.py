@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import PurePosixPath
@@ -24,12 +25,48 @@ class RigHead:
     ev100 : float               exposure of every picture in the column
     illuminance : float [lux]   on a grey card at the seat
     lights : one short description per light, such as "sun, 97 klx, elevation 70 deg"
+    places : (name, azimuth, elevation [deg], near) of each, seen from the target of the camera
     """
 
     name: str
     ev100: float
     illuminance: float
     lights: tuple[str, ...]
+    places: tuple[tuple[str, float, float, bool], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dot:
+    """A light on the dial: its rig, direction [deg] and place; the middle is straight above."""
+
+    rig: str
+    name: str
+    azimuth: float
+    elevation: float
+    near: bool
+
+    @property
+    def x(self) -> float:
+        """To the right, the occupant's left, in SVG units."""
+        return self._radius * math.sin(math.radians(self.azimuth))
+
+    @property
+    def y(self) -> float:
+        """Downward, to the front."""
+        return self._radius * math.cos(math.radians(self.azimuth))
+
+    @property
+    def _radius(self) -> float:
+        return 90.0 - max(self.elevation, 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spot:
+    """A place to jump to: its label and pixel in the pictures."""
+
+    label: str
+    x: float
+    y: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +78,7 @@ class MapView:
     image : path relative to the page
     low, high : float [unit]    values at the two ends of the colour bar
     meaning : one sentence for a reader who does not know the equation
+    alone : path of the same map in a range of its own, which ends at ``alone_high``; or None
     """
 
     name: str
@@ -49,6 +87,8 @@ class MapView:
     high: float
     unit: str = "1"
     meaning: str = ""
+    alone: str | None = None
+    alone_high: float = 1.0
 
     def __post_init__(self) -> None:
         if not self.low < self.high:
@@ -102,6 +142,7 @@ class ScoreSection:
     causes : a row per cell: VWI over all, where W_stretch and where W_compression is, cross-checks
     zones : a row per zone: worst VWI of each texture, and its equivalent height
     sentences : what follows from them
+    cells : (texture, rig) -> VWI, marked in the grid of pictures
     """
 
     grid: Table | None = None
@@ -111,6 +152,9 @@ class ScoreSection:
     maps: tuple[MapView, ...] = ()
     checks: tuple[Check, ...] = ()
     refused: str = ""
+    cells: MappingProxyType[tuple[str, str], float] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,6 +176,8 @@ class PageData:
     seams : one row per seam: its two lengths and the ease between them
     shape : one row per zone: how far it stands off the foam
     wrinkles : the worst wrinkles and the distortion of the texture
+    spots : places of the worst wrinkles in the pictures
+    toml : what parameters belong to -> the same as TOML, every digit kept
     score : how visible wrinkles are; None where nothing was scored
     parameters : what they belong to -> table of keys, values and sources
     provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
@@ -159,6 +205,8 @@ class PageData:
     shape: Table | None = None
     wrinkles: WrinkleSection | None = None
     score: ScoreSection | None = None
+    spots: tuple[Spot, ...] = ()
+    toml: MappingProxyType[str, str] = field(default_factory=lambda: MappingProxyType({}))
     checks: tuple[Check, ...] = ()
     warnings: tuple[str, ...] = ()
     history: MappingProxyType[str, tuple[float, ...]] = field(
@@ -185,6 +233,26 @@ class PageData:
     @property
     def images(self) -> tuple[str, ...]:
         """Every image the page shows."""
+        alone = (view.alone for view in self.views if view.alone)
+        return (*self.pictures.values(), *(view.image for view in self.views), *alone)
+
+    @property
+    def lights(self) -> tuple[Dot, ...]:
+        """All lights of all rigs, for the dial."""
+        return tuple(
+            Dot(rig=rig.name, name=name, azimuth=azimuth, elevation=elevation, near=near)
+            for rig in self.rigs
+            for name, azimuth, elevation, near in rig.places
+        )
+
+    @property
+    def visibility(self) -> dict[tuple[str, str], float]:
+        """VWI of each cell; empty where nothing was scored."""
+        return dict(self.score.cells) if self.score else {}
+
+    @property
+    def views(self) -> tuple[MapView, ...]:
+        """Every map on the page."""
         sections = (section for section in (self.wrinkles, self.score) if section)
         further = [view for section in sections for view in section.maps]
-        return (*self.pictures.values(), *(view.image for view in (*self.maps, *further)))
+        return (*self.maps, *further)

@@ -9,15 +9,17 @@ from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
 
+import numpy as np
+
 from seatlook import __version__
 from seatlook.assembly.ease import SeamEase, seam_ease
 from seatlook.evaluation import MAPS, RESULT, STANDOFF, Evaluation, label
 from seatlook.model import Light, Rig, Scene, Solution
-from seatlook.pbr import ev100, lux_at_seat, offscreen_backend
+from seatlook.pbr import ev100, lux_at_seat, offscreen_backend, render_map
 from seatlook.report.chart import number
 from seatlook.report.data import Check, MapView, PageData, RigHead, ScoreSection, Table
 from seatlook.report.page import write_page
-from seatlook.report.parameters import parameter_tables
+from seatlook.report.parameters import parameter_tables, parameter_toml
 from seatlook.report.wrinkles import wrinkle_section
 from seatlook.solver import foam_wavelength, verdict
 from seatlook.solver.process import RESIDUAL
@@ -50,13 +52,18 @@ _CHARTED: Mapping[str, tuple[str, float]] = {
     "elastic": ("elastic energy [J]", 1.0),
     "kinetic": ("kinetic energy [J]", 1.0),
 }
+_CAUSES = ("w_stretch", "w_compression")  # maps that have a range of their own as well
+_OWN = 0.992  # share of the faces that lie in it
 _LOOSE_MESH = 8.0  # lambda / h below which the wrinkles' shape is not resolved
 _FINE_MESH = 12.0  # lambda / h from which the indices are
 
 
-def write_report(evaluation: Evaluation, *, score: ScoreSection | None = None) -> Path:
+def write_report(
+    evaluation: Evaluation, *, score: ScoreSection | None = None, single_file: bool = False
+) -> Path:
     """Write the gallery page of an evaluation into its folder and return its path."""
-    return write_page(replace(page_data(evaluation), score=score), evaluation.folder)
+    data = replace(page_data(evaluation), score=score)
+    return write_page(data, evaluation.folder, single_file=single_file)
 
 
 def page_data(evaluation: Evaluation) -> PageData:
@@ -77,6 +84,8 @@ def page_data(evaluation: Evaluation) -> PageData:
         maps=tuple(_maps(evaluation)),
         zones=_zones(evaluation),
         parameters=parameter_tables(scene),
+        toml=parameter_toml(scene),
+        spots=wrinkles.spots,
         provenance=MappingProxyType(dict(_provenance(evaluation, waves))),
         status=solution.status,
         seams=seam_table(scene),
@@ -104,7 +113,14 @@ def rig_head(rig: Rig) -> RigHead:
         ev100=ev100(rig),
         illuminance=lux_at_seat(rig)["total"],
         lights=tuple(lights),
+        places=tuple((light.name, *_seen_at(light), light.near) for light in rig.lights),
     )
+
+
+def _seen_at(light: Light) -> tuple[float, float]:
+    """Azimuth and elevation [deg] of a light from the seat, which lies about the origin."""
+    x, y, z = light.vector / np.linalg.norm(light.vector)
+    return float(np.degrees(np.arctan2(x, -y)) % 360), float(np.degrees(np.arcsin(z)))
 
 
 def _described(light: Light) -> str:
@@ -118,6 +134,7 @@ def _maps(evaluation: Evaluation) -> Iterator[MapView]:
     for name, (path, picture) in evaluation.maps.items():
         low, high = picture.value_range
         picture_unit, meaning = ("mm", STANDOFF) if name == "standoff" else ("1", MAPS[name])
+        alone, top = _own_range(evaluation, name) if name in _CAUSES else (None, 1.0)
         yield MapView(
             name=label(name),
             image=path,
@@ -125,7 +142,25 @@ def _maps(evaluation: Evaluation) -> Iterator[MapView]:
             high=high,
             unit=picture_unit,
             meaning=meaning,
+            alone=alone,
+            alone_high=top,
         )
+
+
+def _own_range(evaluation: Evaluation, name: str) -> tuple[str, float]:
+    """Draw a cause of W2 in the range of its own values; return path and upper end."""
+    values = getattr(evaluation.indices, name)
+    top = max(float(np.quantile(values, _OWN)), 1e-6)
+    path = f"maps/{name}-own.png"
+    render_map(
+        evaluation.solution,
+        values,
+        camera=evaluation.camera,
+        title=f"{label(name)}, range of its own",
+        unit="1",
+        value_range=(0.0, top),
+    ).save(evaluation.folder / path)
+    return path, top
 
 
 def _zones(evaluation: Evaluation) -> Table:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from pathlib import Path
+from urllib.parse import quote
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
@@ -17,13 +18,14 @@ from seatlook.report.data import PageData
 _TEMPLATES = Path(__file__).parent / "templates"
 
 
-def write_page(data: PageData, folder: Path) -> Path:
+def write_page(data: PageData, folder: Path, *, single_file: bool = False) -> Path:
     """Write ``folder/index.html`` and return its path.
 
     Parameters
     ----------
     data : what to show
     folder : where the images of ``data`` already are
+    single_file : put the images into the page, which then stands alone
 
     Raises
     ------
@@ -44,26 +46,32 @@ def write_page(data: PageData, folder: Path) -> Path:
             file=folder,
         )
     path = folder / "index.html"
-    files.write_text(path, page_html(data))
+    files.write_text(path, page_html(data, inside=folder if single_file else None))
     return path
 
 
-def page_html(data: PageData) -> str:
-    """Return the page as text."""
+def page_html(data: PageData, *, inside: Path | None = None) -> str:
+    """Return the page as text, with the images of the folder ``inside`` in it if there is one."""
     style = (_TEMPLATES / "page.css").read_text(encoding="utf-8")
     script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
-    return (
-        environment()
-        .get_template("page.html.j2")
-        .render(
-            page=data,
-            policy=content_policy(style, script),
-            style=Markup(style),
-            script=Markup(script),
-            charts=history_charts(data.history),
-            chart_size=(WIDTH, HEIGHT),
-        )
+    made = environment()
+    made.filters["url"] = quote if inside is None else lambda name: _data_uri(inside / name)
+    # The script finds a picture by the name of its element, whatever its address is.
+    made.globals["ids"] = {name: f"i{k}" for k, name in enumerate(dict.fromkeys(data.images))}
+    made.globals["alone"] = inside is not None
+    return made.get_template("page.html.j2").render(
+        page=data,
+        policy=content_policy(style, script, images="'self'" if inside is None else "data:"),
+        style=Markup(style),
+        script=Markup(script),
+        charts=history_charts(data.history),
+        chart_size=(WIDTH, HEIGHT),
     )
+
+
+def _data_uri(path: Path) -> str:
+    kind = "image/gif" if path.suffix == ".gif" else "image/png"
+    return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
 
 
 def environment() -> Environment:
@@ -79,10 +87,10 @@ def environment() -> Environment:
     return made
 
 
-def content_policy(style: str, script: str) -> str:
+def content_policy(style: str, script: str, *, images: str = "'self'") -> str:
     """Content policy: nothing but the page's own style, script and images."""
     return (
-        "default-src 'none'; img-src 'self'; base-uri 'none'; form-action 'none'; "
+        f"default-src 'none'; img-src {images}; base-uri 'none'; form-action 'none'; "
         f"style-src '{_digest(style)}'; script-src '{_digest(script)}'"
     )
 

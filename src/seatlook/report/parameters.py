@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -55,6 +56,57 @@ def parameter_tables(scene: Scene) -> MappingProxyType[str, Table]:
     return MappingProxyType(
         {owner: Table(heads=heads, rows=tuple(rows)) for owner, rows in tables.items()}
     )
+
+
+def parameter_toml(scene: Scene) -> MappingProxyType[str, str]:
+    """The same as TOML in the files' units, every digit kept, to copy into a scene or material."""
+    found = {
+        "scene": "[mesh]\n"
+        + "".join(_line(n, getattr(scene, n)) for n in ("element_size", "smallest_notch", "seed"))
+        + "\n[wrinkle]\n"
+        + "".join(_line(n, getattr(scene, n)) for n in ("curvature", "c_threshold"))
+    }
+    for m in {m.name: m for m in scene.materials.values()}.values():
+        looks = _block("appearance", m.appearance)
+        found[f"cover {m.name}"] = _block("fabric", m.fabric) + "\n" + looks
+    foam = scene.foam.material
+    found[f"foam {foam.name}"] = _block("foam", foam)
+    for name, appearance in scene.textures.items():
+        if appearance is not None:
+            found[f"texture {name}"] = _block("appearance", appearance)
+    return MappingProxyType(found)
+
+
+def _block(name: str, values: Any) -> str:
+    fields = (f.name for f in dataclasses.fields(values) if f.name not in ("name", "source"))
+    return f"[{name}]\n" + "".join(_line(f, getattr(values, f)) for f in fields)
+
+
+def _line(name: str, value: Any) -> str:
+    if value is None:
+        return ""
+    key, factor = _FILE_KEYS.get(name, (name, 1.0))
+    return f"{key} = {_toml(value, factor)}\n"
+
+
+def _toml(value: Any, factor: float) -> str:
+    if isinstance(value, Curve):
+        stiffness = _toml(value.stiffness, factor)
+        if len(value.strain) == 1:
+            return stiffness[1:-1]
+        return f"{{ strain = {_toml(value.strain, 1)}, stiffness = {stiffness} }}"
+    if isinstance(value, np.ndarray):
+        return f"[{', '.join(_digits(factor * float(v)) for v in value)}]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return _digits(factor * value)
+    return json.dumps(value) if isinstance(value, str) else str(value)
+
+
+def _digits(value: float) -> str:
+    """Every digit that counts: a factor of 1000 must not leave 0.9000000000000001."""
+    return repr(float(f"{value:.14g}"))
 
 
 def _rows(values: Any, source: Mapping[str, str]) -> Iterator[Row]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -56,6 +57,7 @@ def score_section(score: SceneScore, folder: Path) -> ScoreSection:
         sentences=tuple(sentences(score)),
         maps=draw_maps(score, cells, folder),
         checks=score_checks(score),
+        cells=MappingProxyType({cell: s.score.vwi for cell, s in score.grid.sights.items()}),
     )
 
 

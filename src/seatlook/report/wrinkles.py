@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from seatlook.evaluation import surface
 from seatlook.report.chart import HEIGHT, WIDTH, Tick, number
-from seatlook.report.data import MapView, Table
+from seatlook.report.data import MapView, Spot, Table
 from seatlook.study.findings import (
     CHECKER,
     DISTORTION_MAPS,
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from seatlook.evaluation import Evaluation
+    from seatlook.model import Camera
     from seatlook.wrinkle import Section
 
 _LABELS = {
@@ -62,6 +63,7 @@ class WrinkleSection:
     distortion : one row per zone
     maps : W2 net, distortion of the texture, a checker
     files : tables beside the page
+    spots : where the worst wrinkles are in the pictures
     """
 
     worst: Table
@@ -69,6 +71,7 @@ class WrinkleSection:
     distortion: Table
     maps: tuple[MapView, ...]
     files: tuple[str, ...]
+    spots: tuple[Spot, ...] = ()
 
 
 def wrinkle_section(evaluation: Evaluation) -> WrinkleSection:
@@ -89,7 +92,16 @@ def wrinkle_section(evaluation: Evaluation) -> WrinkleSection:
         distortion=_distortion(found),
         maps=tuple(_maps(evaluation, found)),
         files=write_findings(found, out),
+        spots=tuple(_spots(evaluation.camera, found)),
     )
+
+
+def _spots(camera: Camera, found: Findings) -> Iterator[Spot]:
+    """Pixels of the worst wrinkles, of those inside the picture."""
+    for rank, wrinkle in enumerate(found.worst, 1):
+        x, y = camera.pixel(wrinkle.position)
+        if 0 <= x < camera.size[0] and 0 <= y < camera.size[1]:
+            yield Spot(label=f"wrinkle {rank}", x=round(x, 1), y=round(y, 1))
 
 
 def profile(name: str, cut: Section) -> Profile:

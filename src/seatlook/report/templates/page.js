@@ -1,28 +1,41 @@
 "use strict";
 (() => {
   const get = (id) => document.getElementById(id);
+  const all = (selector) => [...document.querySelectorAll(selector)];
   const sheet = document.querySelector(".sheet");
   const stage = get("stage");
   const cut = get("cut");
   const choice = { a: get("choice-a"), b: get("choice-b") };
   const picture = { a: get("picture-a"), b: get("picture-b") };
-  const chosen = (side) => choice[side].selectedOptions[0].textContent;
+  const overlay = { choice: get("overlay"), picture: get("picture-o"), opacity: get("opacity") };
+  const chosen = (select) => select.selectedOptions[0].textContent;
+  const source = (key) => get(key).src;
+  const width = Number(picture.a.getAttribute("width"));
 
+  // What is shown.
   function show() {
     for (const side of ["a", "b"]) {
-      picture[side].src = choice[side].value;
-      picture[side].alt = `${side.toUpperCase()}: ${chosen(side)}`;
+      picture[side].src = source(choice[side].value);
+      picture[side].alt = `${side.toUpperCase()}: ${chosen(choice[side])}`;
     }
-    get("said").textContent = `A: ${chosen("a")}. B: ${chosen("b")}.`;
+    const over = overlay.choice.value;
+    overlay.picture.hidden = !over;
+    overlay.opacity.disabled = !over;
+    overlay.picture.src = source(over || choice.a.value);
+    overlay.picture.alt = over ? `Over it: ${chosen(overlay.choice)}` : "";
+    overlay.picture.style.opacity = `${overlay.opacity.value}%`;
+    get("said").textContent = `A: ${chosen(choice.a)}. B: ${chosen(choice.b)}.`
+      + (over ? ` Over both: ${chosen(overlay.choice)}.` : "");
+    for (const light of all("[data-rig]")) {
+      light.setAttribute("aria-pressed", String(get(choice.a.value).dataset.of === light.dataset.rig));
+    }
   }
-  function pick(side, image) {
-    choice[side].value = image;
+  function pick(side, key) {
+    choice[side].value = key;
     show();
   }
   function swap() {
-    const a = choice.a.value;
-    choice.a.value = choice.b.value;
-    choice.b.value = a;
+    [choice.a.value, choice.b.value] = [choice.b.value, choice.a.value];
     show();
   }
   function flip(on) {
@@ -35,40 +48,170 @@
     cut.disabled = sheet.dataset.mode === "difference";
     move();
   }
+
+  // The same picture of A under another light.
+  function light(rig) {
+    const now = get(choice.a.value);
+    const there = all("[data-of]").filter((image) => image.dataset.of === rig);
+    const same = there.find((image) => image.dataset.row === now.dataset.row) ?? there[0];
+    pick("a", same.id);
+  }
+
+  // Size: one image pixel is one screen pixel at 1:1, whatever the display's scale.
+  function scale() {
+    const now = picture.a.getBoundingClientRect().width * window.devicePixelRatio / width;
+    const seen = Number(get("scale").dataset.density) * now;
+    get("scale").textContent = Math.abs(now - 1) < 0.005
+      ? "1:1, as scored"
+      : `${now.toFixed(2)}:1, ${seen.toFixed(0)} pixels per degree; scores are for 1:1`;
+  }
   function zoom() {
     const times = get("zoom").value;
     const fits = times === "fit";
-    // One image pixel is one screen pixel at 1:1, whatever the display's scale.
-    const width = Number(picture.a.getAttribute("width")) * Number(times) / window.devicePixelRatio;
-    sheet.style.width = fits ? "" : `${width}px`;
+    sheet.style.width = fits ? "" : `${width * Number(times) / window.devicePixelRatio}px`;
     if (fits) delete sheet.dataset.zoom; else sheet.dataset.zoom = times;
+    scale();
+  }
+  function enlarge(step) {
+    const zoomed = get("zoom");
+    const index = Math.min(Math.max(zoomed.selectedIndex + step, 0), zoomed.options.length - 1);
+    zoomed.selectedIndex = index;
+    zoom();
+  }
+  function jump(button) {
+    get("zoom").value = "2";
+    zoom();
+    const times = sheet.clientWidth / width;
+    const [x, y] = [Number(button.dataset.x) * times, Number(button.dataset.y) * times];
+    get("spot").hidden = false;
+    get("spot").style.left = `${x}px`;
+    get("spot").style.top = `${y}px`;
+    stage.scrollTo(x - stage.clientWidth / 2, y - stage.clientHeight / 2);
+    get("compare").scrollIntoView();
+    stage.focus();
+  }
+
+  // Dragging moves the border near it, and the picture elsewhere.
+  let held = null;
+  function press(event) {
+    if (event.button !== 0 || event.pointerType === "touch") return;
+    const box = sheet.getBoundingClientRect();
+    const away = Math.abs(event.clientX - box.left - box.width * cut.value / 100);
+    const pans = sheet.dataset.zoom !== undefined && (sheet.dataset.mode !== "wipe" || away > 24);
+    held = { pans, x: event.clientX, y: event.clientY, left: stage.scrollLeft, top: stage.scrollTop };
+    drag(event);
   }
   function drag(event) {
-    if (event.buttons !== 1 || sheet.dataset.mode !== "wipe" || event.pointerType === "touch") return;
-    const box = sheet.getBoundingClientRect();
-    cut.value = String(Math.round(100 * (event.clientX - box.left) / box.width));
-    move();
+    if (!held || event.buttons !== 1) return;
+    if (held.pans) {
+      stage.scrollTo(held.left + held.x - event.clientX, held.top + held.y - event.clientY);
+    } else if (sheet.dataset.mode !== "difference") {
+      const box = sheet.getBoundingClientRect();
+      cut.value = String(Math.round(100 * (event.clientX - box.left) / box.width));
+      move();
+    }
+  }
+
+  // Rows become columns and columns rows.
+  function turn() {
+    const table = document.querySelector(".grid");
+    const cells = [...table.rows].map((row) => [...row.cells]);
+    const head = document.createElement("thead");
+    const body = document.createElement("tbody");
+    cells[0].forEach((_, column) => {
+      const row = (column ? body : head).insertRow();
+      cells.forEach((line, index) => {
+        const cell = line[column];
+        if (cell.tagName === "TH") cell.scope = column ? "row" : "col";
+        if (cell.tagName === "TH" && !column && !index) cell.scope = "col";
+        row.append(cell);
+      });
+    });
+    table.replaceChildren(head, body);
+    table.dataset.turned = table.dataset.turned === "yes" ? "" : "yes";
+    get("turn").setAttribute("aria-pressed", String(table.dataset.turned === "yes"));
+  }
+
+  // One range for all maps, or each its own.
+  function range() {
+    for (const image of all("img[data-alone]")) {
+      image.dataset.shared ??= image.src;
+      image.src = get("shared").checked ? image.dataset.shared : get(image.dataset.alone).src;
+      const said = image.closest("figure").querySelector(".range");
+      said.dataset.shared ??= said.textContent;
+      said.textContent = get("shared").checked ? said.dataset.shared : said.dataset.alone;
+    }
+    show();
+  }
+
+  async function copy(button) {
+    const text = get(button.dataset.copy);
+    try {
+      await navigator.clipboard.writeText(text.textContent);
+      button.textContent = "Copied";
+    } catch {
+      getSelection().selectAllChildren(text);
+      button.textContent = "Selected: press Ctrl+C";
+    }
   }
 
   choice.b.selectedIndex = Math.min(1, choice.b.options.length - 1);
-  for (const side of ["a", "b"]) choice[side].addEventListener("change", show);
-  for (const button of document.querySelectorAll("[data-pick]")) {
+  for (const select of [choice.a, choice.b, overlay.choice]) select.addEventListener("change", show);
+  overlay.opacity.addEventListener("input", show);
+  for (const button of all("[data-pick]")) {
     button.parentElement.hidden = false;
     button.addEventListener("click", () => pick(button.dataset.pick, button.dataset.image));
   }
+  for (const mark of all("[data-rig]")) {
+    mark.addEventListener("click", () => light(mark.dataset.rig));
+    mark.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      event.stopPropagation();
+      light(mark.dataset.rig);
+    });
+  }
+  for (const button of all("[data-x]")) button.addEventListener("click", () => jump(button));
+  for (const button of all("[data-copy]")) button.addEventListener("click", () => copy(button));
+  for (const part of all(".scripted")) part.hidden = false;
   cut.addEventListener("input", move);
   get("mode").addEventListener("change", mode);
   get("zoom").addEventListener("change", zoom);
   get("swap").addEventListener("click", swap);
+  get("turn").addEventListener("click", turn);
+  get("shared")?.addEventListener("change", range);
   get("flip").addEventListener("click", () => flip(sheet.dataset.flip !== "b"));
-  stage.addEventListener("pointerdown", drag);
+  get("help").addEventListener("click", () => get("keys").showModal());
+  get("hold").addEventListener("pointerdown", () => flip(true));
+  for (const end of ["pointerup", "pointerleave", "blur"]) {
+    get("hold").addEventListener(end, () => flip(false));
+  }
+  stage.addEventListener("pointerdown", press);
   stage.addEventListener("pointermove", drag);
   stage.addEventListener("dragstart", (event) => event.preventDefault());
+  window.addEventListener("pointerup", () => { held = null; });
+  window.addEventListener("resize", scale);
+
+  const keys = {
+    f: () => flip(sheet.dataset.flip !== "b"),
+    s: swap,
+    t: turn,
+    "+": () => enlarge(1),
+    "-": () => enlarge(-1),
+    1: () => { get("zoom").value = "1"; zoom(); },
+    0: () => { get("zoom").value = "fit"; zoom(); },
+    "?": () => get("keys").showModal(),
+  };
+  const holds = (event) => event.key === " " && [stage, get("hold")].includes(event.target);
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
-    if (event.key === "f" || event.key === "F") flip(sheet.dataset.flip !== "b");
-    if (event.key === "s" || event.key === "S") swap();
+    if (holds(event)) {
+      event.preventDefault();
+      flip(true);
+    }
+    if (!get("keys").open) keys[event.key.toLowerCase()]?.();
   });
+  document.addEventListener("keyup", (event) => { if (holds(event)) flip(false); });
 
   get("comparison").hidden = false;
   mode();
