@@ -41,7 +41,11 @@ RESIDUAL = 1e-3  # "converged": largest out-of-balance force over mean elastic n
 
 
 class Record(NamedTuple):
-    """One row of the history: time [s], energies [J], gap [m]; ``elastic`` is the sheet's own."""
+    """One row of the history: time [s], energies [J], gap [m]; ``elastic`` is the sheet's own.
+
+    Work [J] in the step: of the ties and of the weight on the cover, and of the cover on what rubs;
+    ``damping`` is by how much the step lowers the potential of all, which nothing stores.
+    """
 
     time: float
     energy: float
@@ -51,6 +55,10 @@ class Record(NamedTuple):
     residual: float
     seam_gap: float
     iterations: int
+    tie_work: float = 0.0
+    weight_work: float = 0.0
+    friction_work: float = 0.0
+    damping: float = 0.0
 
 
 class Process:
@@ -206,6 +214,7 @@ class Process:
     def _descend(self, factor: Preconditioner | None, limit: float, iterations: int) -> Record:
         """Minimise the moving potential until no vertex is out of balance by ``limit`` [N]."""
         np.copyto(self._start, self.x)
+        before = self._outside()
         descent = self._minimiser.minimise(
             self._moving,
             self.state,
@@ -217,9 +226,22 @@ class Process:
         # In settling, too, movement counts by the time step of the process.
         self.v /= self.dt
         self._evaluations = descent.evaluations
-        record = self.record(descent.iterations)
+        after = self._outside()
+        ties, weight, friction, whole = np.subtract(before, after).tolist()
+        record = self.record(descent.iterations)._replace(
+            tie_work=ties, weight_work=weight, friction_work=-friction, damping=whole
+        )
         self.ties.update(self.x)
         return record
+
+    def _outside(self) -> tuple[float, float, float, float]:
+        """Potential [J] of ties, weight, friction and of all, with what lags as it is."""
+        friction, n = 0.0, len(self.x)
+        if self.foundation is not None:
+            friction = self.foundation.friction.value(self.state, self._work)
+        ties = self.ties.value(self.x, self._work[:n])
+        weight = self.gravity.value(self.x, self._work[:n])
+        return ties, weight, friction, self._static.value(self.state, self._work)
 
     def _integrate(self, options: Explicit, *, refactor: bool) -> Record:
         """Go through a time step by central differences."""
