@@ -48,3 +48,36 @@ def conormal_slopes(X, ends, start, nodes, values, ridge):
         left = np.concatenate([hold, A * w[:, None]])
         out[e] = np.linalg.lstsq(left, right, rcond=None)[0][7] / length
     return out
+
+
+def curvature_rows(X, edges, rows, area):
+    """Dense (m, 3, n) rows of (x,11  x,22  2 x,12) by Green's theorem, edge by edge."""
+    out = np.zeros((len(area), 3, len(X)))
+    for t in range(len(area)):
+        for k in range(3):
+            e = edges.of_face[t, k]
+            p, q = edges.ends[e]
+            nu = edges.normal[e]
+            tau = np.array([-nu[1], nu[0]])
+            gradient = np.zeros((2, len(X)))
+            for i in range(rows.start[e], rows.start[e + 1]):
+                gradient[:, rows.nodes[i]] += nu * rows.weights[i]
+            gradient[:, q] += tau / edges.length[e]
+            gradient[:, p] -= tau / edges.length[e]
+            scale = edges.sign[t, k] * edges.length[e] / area[t]
+            out[t, 0] += scale * nu[0] * gradient[0]
+            out[t, 1] += scale * nu[1] * gradient[1]
+            out[t, 2] += scale * (nu[0] * gradient[1] + nu[1] * gradient[0])
+    return out
+
+
+def bending_matrix(rows, edges, area, stiffness, share):
+    """Dense (n, n) matrix of ``sum A k . D k`` plus ``share`` of the jumps across inner edges."""
+    inner = edges.faces[:, 1] >= 0
+    sides = inner[edges.of_face].sum(axis=1)
+    K = np.einsum("t,tin,tij,tjm->nm", area, rows, stiffness, rows)
+    for first, second in edges.faces[inner]:
+        weight = share * (area[first] / sides[first] + area[second] / sides[second])
+        jump = rows[first] - rows[second]
+        K += weight * jump.T @ (0.5 * (stiffness[first] + stiffness[second])) @ jump
+    return K

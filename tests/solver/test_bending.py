@@ -4,6 +4,9 @@ import pytest
 import fabrics
 import meshes
 import naive
+from seatlook.solver.bending import JUMP, Bending
+from seatlook.solver.curvature import recover_curvature
+from seatlook.solver.edgeslope import areas, edges_of, slope_rows
 from seatlook.solver.elastic import ElasticSheet
 from waves import lateral_load, sine_curvature_error, winkler_load
 
@@ -47,6 +50,27 @@ def test_crown_is_positive_and_its_top_longer():
     np.testing.assert_allclose(top - bottom, between, atol=1e-15)
     assert (top - bottom)[:, 0, 0].min() > 0.0
     np.testing.assert_allclose(top + bottom, 2 * mid, atol=1e-15)
+
+
+@pytest.mark.parametrize("kind", ["uns", "sliver"])
+def test_kernels_equal_their_twins(kind):
+    X, T = meshes.rectangle(kind, 1.0, 0.8, 0.15)
+    edges, area = edges_of(X, T), areas(X, T)
+    rows = slope_rows(X, T, edges)
+    rng = np.random.default_rng(4)
+    stiffness = np.einsum("tij,tkj->tik", *2 * (rng.standard_normal((len(T), 3, 3)),))
+    # With every rim sewn no rotation is released.
+    rim = np.flatnonzero(edges.free)
+    curvature = recover_curvature(len(X), edges, rows, area, stiffness, None, rim)
+    dense = naive.curvature_rows(X, edges, rows, area)
+    x = bowl(X) + 0.01 * rng.standard_normal((len(X), 3))
+    np.testing.assert_allclose(curvature.at(x), dense @ x, atol=1e-9)
+    values = rng.standard_normal((len(T), 3, 3))
+    back = np.einsum("tcn,tci->ni", dense, values)
+    np.testing.assert_allclose(curvature.back(values), back, atol=1e-9)
+    K = Bending(edges, curvature, area, stiffness).stiffness().toarray()
+    twin = naive.bending_matrix(dense, edges, area, stiffness, JUMP)
+    np.testing.assert_allclose(K, twin, atol=1e-11 * abs(twin).max())
 
 
 @pytest.mark.parametrize("kind", meshes.KINDS)

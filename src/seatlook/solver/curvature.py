@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array, vstack
+import numpy.typing as npt
 
 from seatlook.model import FloatArray, IntArray
-from seatlook.solver.edgeslope import Edges, Rows, gradient_matrices
+from seatlook.solver.edgeslope import Edges, Rows
+from seatlook.solver.kernels import curvature as kernels
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,22 +30,38 @@ class Clamps:
 
 @dataclass(frozen=True, slots=True)
 class Curvature:
-    """Affine map from positions to (x,11, x,22, 2 x,12), three rows for each triangle.
+    """Affine map from positions to (x,11, x,22, 2 x,12) of every triangle.
 
     Parameters
     ----------
-    operator : (3m, n) sparse [1/m2]
-    offset : (3m, 3) float64 [1/m]      what clamped edges add
+    start : (m + 1,) int64; nodes : (k,) int64; weights : (k, 3) float64 [1/m2]
+        rows of triangle t at ``start[t]`` to ``start[t + 1]``, a column for each derivative
+    offset : (m, 3, 3) float64 [1/m]    what clamped edges add
     reference : (n, 3) float64 [m]      positions where both nearly cancel
     """
 
-    operator: csr_array
+    start: IntArray
+    nodes: IntArray
+    weights: FloatArray
     offset: FloatArray
     reference: FloatArray
 
+    @property
+    def rows(self) -> tuple[IntArray, IntArray, FloatArray]:
+        """The compressed rows, as the kernels take them."""
+        return self.start, self.nodes, self.weights
+
     def at(self, x: FloatArray) -> FloatArray:
         """Return (x,11, x,22, 2 x,12) of every triangle, (m, 3, 3) [1/m]."""
-        return np.asarray((self.operator @ x + self.offset).reshape(-1, 3, 3))
+        out = self.offset.copy()
+        kernels.apply(*self.rows, x, out)
+        return out
+
+    def back(self, values: FloatArray) -> FloatArray:
+        """Return the transposed map (n, 3) of values (m, 3, 3)."""
+        out = np.zeros_like(self.reference)
+        kernels.apply_back(*self.rows, values, out)
+        return out
 
 
 def recover_curvature(
@@ -71,62 +88,44 @@ def recover_curvature(
     if clamps is not None:
         held[clamps.edges] = True
         slopes[clamps.edges] = clamps.slopes
-        weights = np.where(np.repeat(held, np.diff(rows.start)), 0.0, rows.weights)
-        rows = Rows(rows.start, rows.nodes, weights)
-    warp, weft = gradient_matrices(count, edges, rows)
-    by_warp, by_weft = _green(edges, area)
-    given_warp, given_weft = edges.normal[:, :1] * slopes, edges.normal[:, 1:] * slopes
-    operator = _interleave(by_warp @ warp, by_weft @ weft, by_warp @ weft + by_weft @ warp)
-    offset = np.stack(
-        [by_warp @ given_warp, by_weft @ given_weft, by_warp @ given_weft + by_weft @ given_warp],
-        axis=1,
+    start, nodes, weights = kernels.triangles(
+        count,
+        edges.ends,
+        edges.of_face,
+        edges.sign,
+        edges.length,
+        edges.normal,
+        area,
+        held,
+        (rows.start, rows.nodes, rows.weights),
     )
+    scale = edges.sign * edges.length[edges.of_face] / area[:, None]
+    along = scale[:, None] * np.moveaxis(_squares(edges.normal)[edges.of_face], 2, 1)
+    offset = np.asarray(along @ slopes[edges.of_face])
     loose = edges.free & ~held
     if sewn is not None:
         loose[sewn] = False
-    release = _release(edges, stiffness, loose)
+    for t in np.flatnonzero(loose[edges.of_face].any(axis=1)):
+        normal = edges.normal[edges.of_face[t, loose[edges.of_face[t]]]]
+        project = _released(normal, stiffness[t])
+        weights[start[t] : start[t + 1]] = weights[start[t] : start[t + 1]] @ project.T
+        offset[t] = project @ offset[t]
     return Curvature(
-        operator=csr_array(release @ operator),
-        offset=release @ offset.reshape(-1, 3),
+        start=start,
+        nodes=nodes,
+        weights=weights,
+        offset=offset,
         reference=np.zeros((count, 3)) if clamps is None else clamps.positions,
     )
 
 
-def blocks(values: FloatArray) -> csr_array:
-    """Block-diagonal (3m, 3m) matrix of (m, 3, 3) blocks."""
-    m = len(values)
-    columns = np.repeat(np.arange(3 * m).reshape(m, 1, 3), 3, axis=1).ravel()
-    return csr_array((values.ravel(), columns, 3 * np.arange(3 * m + 1)), shape=(3 * m, 3 * m))
+def _squares(normal: FloatArray) -> FloatArray:
+    """(nu_1^2, nu_2^2, 2 nu_1 nu_2) of conormals (..., 2)."""
+    n0, n1 = normal[..., 0], normal[..., 1]
+    return np.stack([n0 * n0, n1 * n1, 2.0 * n0 * n1], axis=-1)
 
 
-def _green(edges: Edges, area: FloatArray) -> tuple[csr_array, csr_array]:
-    """Sums (m, e) of edge values times the outward conormal, over the triangle's area."""
-    m, e = len(area), len(edges.ends)
-    scale = edges.sign * edges.length[edges.of_face] / area[:, None]
-    across = edges.normal[edges.of_face]
-    start, columns = 3 * np.arange(m + 1), edges.of_face.ravel()
-    return (
-        csr_array(((scale * across[:, :, 0]).ravel(), columns, start), shape=(m, e)),
-        csr_array(((scale * across[:, :, 1]).ravel(), columns, start), shape=(m, e)),
-    )
-
-
-def _interleave(*rows: csr_array) -> csr_array:
-    """Stack three (m, n) matrices so that row 3 t + c is row t of matrix c."""
-    m = rows[0].shape[0]
-    order = np.arange(3 * m).reshape(3, m).T.ravel()
-    return csr_array(csr_array(vstack(rows))[order])
-
-
-def _release(
-    edges: Edges, stiffness: FloatArray, free: np.ndarray[tuple[int], np.dtype[np.bool_]]
-) -> csr_array:
-    """Projection that frees the rotation of each triangle's free edges: I - N (N'DN)^-1 N'D."""
-    project = np.tile(np.eye(3), (len(edges.of_face), 1, 1))
-    at = free[edges.of_face]
-    for t in np.flatnonzero(at.any(axis=1)):
-        n0, n1 = edges.normal[edges.of_face[t, at[t]]].T
-        N = np.stack([n0 * n0, n1 * n1, 2.0 * n0 * n1])
-        D = stiffness[t]
-        project[t] -= N @ np.linalg.solve(N.T @ D @ N, N.T @ D)
-    return blocks(project)
+def _released(normal: FloatArray, D: FloatArray) -> npt.NDArray[np.float64]:
+    """Projection that frees the rotation of a triangle's free edges: I - N (N'DN)^-1 N'D."""
+    N = _squares(normal).T
+    return np.asarray(np.eye(3) - N @ np.linalg.solve(N.T @ D @ N, N.T @ D))

@@ -119,24 +119,18 @@ def slope_rows(rest: FloatArray, faces: IntArray, edges: Edges) -> Rows:
     ring_start, ring = _rings(len(rest), edges)
     patch = _patches(faces, edges)
     reach = np.where((patch < 0).any(axis=1), kernels.ONE_RING, kernels.PATCH)
-    rows, quality = _fit(rest, edges, patch, reach, (ring_start, ring))
-    weak = quality < _WEAK
-    if weak.any():
-        reach[weak] = kernels.TWO_RING
-        rows, _ = _fit(rest, edges, patch, reach, (ring_start, ring))
-    return rows
-
-
-def gradient_matrices(count: int, edges: Edges, rows: Rows) -> tuple[csr_array, csr_array]:
-    """Sparse (e, count) operators of the derivative along warp and along weft at the edges."""
-    e = len(edges.ends)
-    slope = csr_array((rows.weights, rows.nodes, rows.start), shape=(e, count))
-    along = tangent_matrix(count, edges)
-    n0, n1 = edges.normal[:, :1], edges.normal[:, 1:]
-    return (
-        csr_array(slope.multiply(n0) - along.multiply(n1)),
-        csr_array(slope.multiply(n1) + along.multiply(n0)),
+    rows, quality = _fit(rest, edges.ends, patch, reach, (ring_start, ring))
+    weak = np.flatnonzero(quality < _WEAK)
+    if not len(weak):
+        return rows
+    wide, _ = _fit(
+        rest,
+        edges.ends[weak],
+        patch[weak],
+        np.full(len(weak), kernels.TWO_RING),
+        (ring_start, ring),
     )
+    return _replaced(rows, weak, wide)
 
 
 def tangent_matrix(count: int, edges: Edges) -> csr_array:
@@ -176,12 +170,26 @@ def _patches(faces: IntArray, edges: Edges) -> IntArray:
 
 def _fit(
     rest: FloatArray,
-    edges: Edges,
+    ends: IntArray,
     patch: IntArray,
     reach: IntArray,
     rings: tuple[IntArray, IntArray],
 ) -> tuple[Rows, FloatArray]:
-    start, nodes = kernels.stencils(edges.ends, patch, reach, *rings)
+    start, nodes = kernels.stencils(ends, patch, reach, *rings)
     weights = np.empty(len(nodes))
-    quality = kernels.fit(rest, edges.ends, start, nodes, weights)
+    quality = kernels.fit(rest, ends, start, nodes, weights)
     return Rows(start, nodes, weights), quality
+
+
+def _replaced(rows: Rows, which: IntArray, by: Rows) -> Rows:
+    """``rows`` with those numbered ``which`` exchanged."""
+    sizes = np.diff(rows.start)
+    sizes[which] = np.diff(by.start)
+    start = np.concatenate([[0], np.cumsum(sizes)])
+    new = np.zeros(len(sizes), dtype=bool)
+    new[which] = True
+    nodes, weights = np.empty(start[-1], dtype=np.int64), np.empty(start[-1])
+    taken, kept = np.repeat(new, sizes), np.repeat(~new, np.diff(rows.start))
+    nodes[taken], weights[taken] = by.nodes, by.weights
+    nodes[~taken], weights[~taken] = rows.nodes[kept], rows.weights[kept]
+    return Rows(start, nodes, weights)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array, eye_array, kron
@@ -12,6 +13,7 @@ from seatlook.model import Curve, Fabric, FloatArray, IntArray
 from seatlook.solver.curvature import Curvature
 from seatlook.solver.edgeslope import Edges, tangent_matrix
 from seatlook.solver.kernels import membrane as kernels
+from seatlook.solver.kernels.curvature import along_edges
 
 
 class Membrane:
@@ -46,10 +48,11 @@ class Membrane:
     ) -> None:
         self._edges, self._area, self._fabric = edges, area, fabric
         self._natural = natural_strains(edges)
-        bow, self._bow_offset = bow_operator(edges, curvature)
-        count = bow.shape[1]
-        self._rows = (bow.indptr.astype(np.int32), bow.indices.astype(np.int32), bow.data)
-        self._split = _common(tangent_matrix(count, edges), bow)
+        self._count = count = len(curvature.reference)
+        self._rows: tuple[IntArray, IntArray, FloatArray] = along_edges(
+            count, edges.faces, edges.normal, *curvature.rows
+        )
+        self._bow_offset = _bow_offset(edges, curvature.offset)
         self._law = law_tables(fabrics)
         self._constants = np.array(
             [[f.poisson * f.weft.stiffness[0], f.compression_ratio] for f in fabrics]
@@ -113,6 +116,13 @@ class Membrane:
         """Scalar stiffness (n, n) [N/m] of plane triangles, warp and weft each with its own."""
         return self._laplacian
 
+    @cached_property
+    def _split(self) -> tuple[csr_array, csr_array]:
+        """Slope along every edge and its bow as (e, n) matrices of one pattern."""
+        begin, nodes, values = self._rows
+        bow = csr_array((values, nodes, begin), shape=(len(begin) - 1, self._count))
+        return _common(tangent_matrix(self._count, self._edges), bow)
+
     def _rates(self, x: FloatArray) -> csr_array:
         """Derivative (e, 3n) of the edge strains by the positions."""
         edges, (chord, arc) = self._edges, self._split
@@ -166,16 +176,14 @@ def natural_strains(edges: Edges) -> FloatArray:
     return np.ascontiguousarray(out / volume[:, None, None])
 
 
-def bow_operator(edges: Edges, curvature: Curvature) -> tuple[csr_array, FloatArray]:
-    """Second derivative along every edge, the mean of that in its triangles: (e, n), (e, 3)."""
-    m = len(edges.of_face)
-    t0, t1 = -edges.normal[edges.of_face, 1], edges.normal[edges.of_face, 0]
-    share = np.where(edges.free, 1.0, 0.5)[edges.of_face]
-    along = share[:, :, None] * np.stack([t0 * t0, t1 * t1, t0 * t1], axis=2)
-    rows = np.repeat(edges.of_face.ravel(), 3)
-    columns = np.repeat(np.arange(3 * m).reshape(m, 1, 3), 3, axis=1).ravel()
-    pick = csr_array((along.ravel(), (rows, columns)), shape=(len(edges.ends), 3 * m))
-    return csr_array(pick @ curvature.operator), np.asarray(pick @ curvature.offset)
+def _bow_offset(edges: Edges, offset: FloatArray) -> FloatArray:
+    """What clamped slopes add to the second derivative along every edge, (e, 3) [1/m]."""
+    t0, t1 = -edges.normal[:, 1], edges.normal[:, 0]
+    mean = np.where(edges.free[:, None, None], offset[edges.faces[:, 0]], 0.0)
+    inner = ~edges.free
+    mean[inner] = offset[edges.faces[inner]].mean(axis=1)
+    along = np.stack([t0 * t0, t1 * t1, t0 * t1], axis=1)
+    return np.asarray(np.einsum("ec,eci->ei", along, mean))
 
 
 def _common(first: csr_array, second: csr_array) -> tuple[csr_array, csr_array]:

@@ -1,6 +1,9 @@
-"""Quadratic form of one symmetric scalar matrix in the three columns of the positions."""
+"""One symmetric scalar matrix: its assembly, and its quadratic form in the positions."""
 
+import numpy as np
 from numba import njit
+
+from seatlook.solver.kernels.curvature import add_row, grown
 
 
 @njit(cache=True)
@@ -29,3 +32,103 @@ def quadratic(start, columns, values, x, gradient):
         gradient[i, 1] += b
         gradient[i, 2] += c
     return 0.5 * total
+
+
+@njit(cache=True)
+def moments(count, of_face, faces, area, stiffness, jump, start, nodes, weights):
+    """Rows of A D k of every triangle plus ``jump`` D times its jumps towards its neighbours."""
+    room = 20 * len(of_face)
+    begin = np.zeros(len(of_face) + 1, dtype=np.int64)
+    columns, values = np.empty(room, dtype=np.int64), np.empty((room, 3))
+    mark = np.full(count, -1, dtype=np.int64)
+    D, own = np.empty((3, 3)), np.empty((3, 3))
+    last = 0
+    for t in range(len(of_face)):
+        first, most = last, last + start[t + 1] - start[t]
+        for k in range(3):
+            s = faces[of_face[t, k], 0] + faces[of_face[t, k], 1] - t
+            if s >= 0:
+                most += start[s + 1] - start[s]
+        while most > len(columns):
+            columns, values = grown(columns), grown(values)
+        for i in range(3):
+            for j in range(3):
+                own[i, j] = area[t] * stiffness[t, i, j]
+        for k in range(3):
+            e = of_face[t, k]
+            if faces[e, 1] < 0:
+                continue
+            s = faces[e, 0] + faces[e, 1] - t
+            for i in range(3):
+                for j in range(3):
+                    D[i, j] = 0.5 * jump[e] * (stiffness[t, i, j] + stiffness[s, i, j])
+                    own[i, j] += D[i, j]
+            last = _add_rows(
+                D, -1.0, start[s], start[s + 1], nodes, weights, columns, values, first, last, mark
+            )
+        last = _add_rows(
+            own, 1.0, start[t], start[t + 1], nodes, weights, columns, values, first, last, mark
+        )
+        begin[t + 1] = last
+    return begin, columns[:last], values[:last]
+
+
+@njit(cache=True, inline="always")
+def _add_rows(D, sign, one, end, nodes, weights, columns, values, first, last, mark):
+    for i in range(one, end):
+        a, b, c = sign * weights[i, 0], sign * weights[i, 1], sign * weights[i, 2]
+        last = add_row(
+            columns,
+            values,
+            first,
+            last,
+            mark,
+            nodes[i],
+            D[0, 0] * a + D[0, 1] * b + D[0, 2] * c,
+            D[1, 0] * a + D[1, 1] * b + D[1, 2] * c,
+            D[2, 0] * a + D[2, 1] * b + D[2, 2] * c,
+        )
+    return last
+
+
+@njit(cache=True)
+def upper(count, start, nodes, weights, begin, columns, values):
+    """Strictly upper triangle, compressed, of the sum over triangles of rows' times rows."""
+    first = np.zeros(count + 1, dtype=np.int64)
+    for i in range(len(nodes)):
+        first[nodes[i] + 1] += 1
+    for v in range(count):
+        first[v + 1] += first[v]
+    where, of = np.empty(len(nodes), dtype=np.int64), np.empty(len(nodes), dtype=np.int64)
+    fill = first[:-1].copy()
+    for t in range(len(start) - 1):
+        for i in range(start[t], start[t + 1]):
+            where[fill[nodes[i]]], of[fill[nodes[i]]] = i, t
+            fill[nodes[i]] += 1
+    out = np.zeros(count + 1, dtype=np.int32)
+    room = 32 * count + 256
+    to, entries = np.empty(room, dtype=np.int32), np.empty(room)
+    total, seen = np.zeros(count), np.full(count, -1, dtype=np.int64)
+    last = 0
+    for v in range(count):
+        while last + count > len(to):
+            to, entries = grown(to), grown(entries)
+        head = last
+        for p in range(first[v], first[v + 1]):
+            i, t = where[p], of[p]
+            a, b, c = weights[i, 0], weights[i, 1], weights[i, 2]
+            for j in range(begin[t], begin[t + 1]):
+                u = columns[j]
+                if u <= v:
+                    continue
+                if seen[u] != v:
+                    seen[u] = v
+                    total[u] = 0.0
+                    to[last] = u
+                    last += 1
+                total[u] += a * values[j, 0] + b * values[j, 1] + c * values[j, 2]
+        to[head:last].sort()
+        for j in range(head, last):
+            entries[j] = total[to[j]]
+        out[v + 1] = last
+    return out, to[:last], entries[:last]
