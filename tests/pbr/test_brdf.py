@@ -108,9 +108,11 @@ def compiled(appearance, v, l):
     coupling(tables, material, row)
     out = np.empty((len(v), 3))
     for i in range(len(v)):
-        seen = kernel.view_of(tables, material[0], appearance.roughness, 1.0, 0.0, *v[i])
+        seen = kernel.view_of(
+            tables, material[0], appearance.roughness, tuple(appearance.albedo), *v[i]
+        )
         mean = kernel.lookup_mean(row[0], seen.table_roughness)
-        kernel.brdf(tables, material[0], mean, seen, *l[i], out[i])
+        kernel.brdf(tables, material[0], mean, seen, 0.0, *l[i], out[i])
     return out
 
 
@@ -131,14 +133,16 @@ def test_compiled_terms_are_the_array_terms(appearance, anisotropy):
 def test_albedo_towards_is_the_integral(appearance, mu):
     """What a constant sky makes of a surface; the min of both directions is all it neglects."""
     tables, material = load_tables(), pack_materials([appearance])
-    out = np.empty(3)
+    specular, diffuse = np.empty(3), np.empty(3)
     v = view(mu)
-    kernel.albedo_towards(
+    coat = kernel.albedo_towards(
         tables,
         material[0],
-        kernel.view_of(tables, material[0], appearance.roughness, 1.0, 0.0, *v),
-        out,
+        kernel.view_of(tables, material[0], appearance.roughness, tuple(appearance.albedo), *v),
+        specular,
+        diffuse,
     )
+    out = specular + diffuse + coat
     exact = reflected(appearance, v)
     assert (out <= 1.003).all()
     assert np.allclose(out, exact, atol=0.06)

@@ -17,12 +17,12 @@ from seatlook.model import Appearance, Camera, FloatArray, Light, Rig, Solution
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
 from seatlook.pbr.foam import FOAM
-from seatlook.pbr.kernels import bvh, rays, shade, surface, tables
+from seatlook.pbr.kernels import bvh, light, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.kernels.stitch import Thread
 from seatlook.pbr.picture import Image
 from seatlook.pbr.quality import Quality, quality_named
-from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, white_of
+from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, sky_levels, white_of
 from seatlook.pbr.surface import Surface, drawn_surface, neighbour_mean
 from seatlook.pbr.tables import load_tables
 from seatlook.pbr.texture import load_textures, texture_index
@@ -37,6 +37,8 @@ _CARD = 0.18
 _COMPRESSED = 0.02
 # How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
 _OCCLUDER = 0.04
+# Share of the sky seen by what lies below the cover; judgement.
+_HIDDEN_SKY = 0.3
 
 
 class Studio:
@@ -77,7 +79,7 @@ class Studio:
             eye_of(camera, level.factor),
             ids,
             look,
-            pack_lights(rig),
+            pack_lights(rig, level.factor),
             self._around(rig, look.materials, level),
             seen,
             level.factor,
@@ -132,8 +134,8 @@ class Studio:
     ) -> npt.NDArray[np.uint8]:
         """Share of each light [1/255] seen by each sample, (lights, h, w)."""
         stack = np.empty((len(rig.lights), *ids.shape), dtype=np.uint8)
-        for k, light in enumerate(rig.lights):
-            key = ("shadow", _key(camera), level.factor, level.rays, _light_key(light))
+        for k, one in enumerate(rig.lights):
+            key = ("shadow", _key(camera), level.factor, level.rays, _light_key(one))
             make = functools.partial(self._shadow, rig, k, camera, level, ids)
             stack[k] = self._kept(key, make)
         return stack
@@ -148,7 +150,6 @@ class Studio:
             eye_of(camera, level.factor),
             ids,
             pack_lights(rig),
-            np.array([light.size for light in rig.lights]),
             k,
             level.factor,
             level.rays,
@@ -157,28 +158,32 @@ class Studio:
         )
         return np.rint(255 * share).astype(np.uint8)
 
-    def _around(self, rig: Rig, materials: np.ndarray, level: Quality) -> shade.Around:
+    def _around(self, rig: Rig, materials: np.ndarray, level: Quality) -> light.Around:
         """Sky and bounced light at every vertex, found at the solver's vertices."""
         n, k = len(self.surface.mesh.vertices), self.surface.vertices
-        colour = sky_colour(rig)
-        sky, sent = np.tile(rig.ambient * colour, (n, 1)), np.zeros((n, 3))
-        if level.strata == 0:
-            return shade.Around(sky, sent)
-        mesh = self.surface.coarse
-        hits = self._kept(("hits", level.strata), lambda: self._hits(level.strata))
-        few_sky = self._smooth((hits == -1).mean(axis=1)[:, None]) * rig.ambient * colour
+        spread, mesh = self.surface.refined.spread, self.surface.coarse
+        panorama = sky_levels(rig)
+        sky, sent, open_ = np.zeros((n, 3)), np.zeros((n, 3)), np.ones(n)
+        strata = level.strata or 8
+        hits = np.full((len(mesh.vertices), strata * strata), -1, dtype=np.int32)
+        if level.strata:
+            hits = self._kept(("hits", strata), lambda: self._hits(strata))
+        share = self._smooth((hits == -1).mean(axis=1)[:, None])
+        few_sky = share * rig.ambient * sky_colour(rig)
+        if len(panorama):
+            rays.sky_seen(mesh, hits, strata, panorama, few_sky)
+            few_sky = self._smooth(few_sky)
         direct, few = np.empty(few_sky.shape), np.zeros(few_sky.shape)
-        sizes = np.array([light.size for light in rig.lights])
-        rays.irradiance(self._bvh, mesh, pack_lights(rig), sizes, direct)
+        rays.irradiance(self._bvh, mesh, pack_lights(rig), direct)
         albedo = np.ascontiguousarray(materials["albedo"])
         for _ in range(level.bounces):
             rays.bounce(mesh, hits, albedo, direct + np.pi * (few_sky + few), few)
             few = self._smooth(few)
-        sky[:k] = self.surface.refined.spread(few_sky)
-        sent[:k] = self.surface.refined.spread(few)
-        # Little of the sky is seen from below a seam, and from where the foam is in sight.
-        sky[k:] *= 0.3
-        return shade.Around(sky, sent)
+        sky[:k], sent[:k], open_[:k] = spread(few_sky), spread(few), spread(share)[:, 0]
+        # Of the sky below a seam, and where the foam is in sight, little is seen.
+        sky[k:] = _HIDDEN_SKY * few_sky.mean(axis=0)
+        open_[k:] = _HIDDEN_SKY
+        return light.Around(sky, sent, open_, panorama)
 
     def _hits(self, strata: int) -> npt.NDArray[np.int32]:
         """Solver's face that each vertex sees along each direction."""
@@ -207,7 +212,8 @@ class Studio:
         materials = pack_materials([*own.values(), FOAM])
         couplings = np.empty((len(materials), len(load_tables().scale_mean)))
         tables.coupling(load_tables(), materials, couplings)
-        return shade.Look(materials, couplings, load_tables(), load_textures(), self.thread)
+        used = {int(k) for k in materials["texture"] if k >= 0}
+        return shade.Look(materials, couplings, load_tables(), load_textures(*used), self.thread)
 
     def _kept(self, key: Hashable, make: Callable[[], Any]) -> Any:
         """Return the cached value of ``key``; the oldest of more than 24 is dropped."""
@@ -314,7 +320,7 @@ def _edge_width(light: Light, camera: Camera) -> int:
     half = light.size / 2
     if light.near:
         half = light.size / max(float(np.linalg.norm(light.vector - camera.target)), 1e-6)
-    return int(np.clip(np.ceil(np.tan(min(half, 1.0)) * _OCCLUDER / pixel), 1, 8))
+    return int(np.clip(np.ceil(np.tan(min(half, 1.0)) * _OCCLUDER / pixel), 1, 64))
 
 
 def _key(camera: Camera) -> Hashable:

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import functools
+import itertools
 
 import numpy as np
+import numpy.typing as npt
 
 from seatlook.model import Appearance, FloatArray
+from seatlook.pbr.kernels.cells import two_nearest
 from seatlook.pbr.kernels.grain import LEATHER, SUEDE, WEAVE, Textures
 
 SIZE = 1024
 CELLS = 64
+# Where each of the levels begins, each with a quarter of the texels of the one before.
+_START = np.cumsum([0, *((SIZE >> k) ** 2 for k in range(SIZE.bit_length()))])
 # "none" has no map.
 MAPS = {"leather": LEATHER, "suede": SUEDE, "weave": WEAVE}
 
@@ -22,38 +27,47 @@ def texture_index(appearance: Appearance) -> int:
     return MAPS[appearance.texture]
 
 
+def load_textures(*which: int) -> Textures:
+    """Relief maps with those filled in that are asked for; each is made once per process."""
+    for one in which:
+        _make(one)
+    none = np.empty((0, _START[-1], 4), dtype=np.float32)
+    return Textures(_texels(), none, _START[:-1], SIZE, float(CELLS))
+
+
 @functools.cache
-def load_textures() -> Textures:
-    """Make all maps once per process."""
-    reliefs = {LEATHER: _leather(), SUEDE: _suede(), WEAVE: _weave()}
-    levels = SIZE.bit_length()
-    sizes = [(SIZE >> k) ** 2 for k in range(levels)]
-    start = np.concatenate([[0], np.cumsum(sizes)])
-    texels = np.empty((len(MAPS), start[-1], 4), dtype=np.float32)
-    for which, (height, share) in reliefs.items():
-        low, high = np.percentile(height, [5, 95])
-        for k, level in enumerate(_levels(height / (high - low), share)):
-            texels[which, start[k] : start[k + 1]] = level
-    return Textures(texels, start[:-1].astype(np.int64), SIZE, float(CELLS))
+def _texels() -> npt.NDArray[np.float32]:
+    return np.zeros((len(MAPS), _START[-1], 4), dtype=np.float32)
 
 
-def _levels(height: FloatArray, share: FloatArray) -> list[FloatArray]:
-    """Slopes, their variance and the colour share, each level half the one before."""
+@functools.cache
+def _make(which: int) -> None:
+    height, share = {LEATHER: _leather, SUEDE: _suede, WEAVE: _weave}[which]()
+    low, high = np.percentile(height, [5, 95])
+    _texels()[which] = packed_levels(slopes(height / (high - low), share))
+
+
+def slopes(height: FloatArray, share: FloatArray) -> FloatArray:
+    """Finest level (h, w, 4) of a relief in cells: slopes, their squared length, colour share."""
     step = 2 * CELLS / SIZE
     su = (np.roll(height, -1, axis=1) - np.roll(height, 1, axis=1)) / step
     sv = (np.roll(height, -1, axis=0) - np.roll(height, 1, axis=0)) / step
-    stack = np.stack([su, sv, su**2 + sv**2, share], axis=-1)
-    levels = []
-    while True:
-        level = stack.copy()
-        level[..., 2] = np.maximum(
-            0.0, 0.5 * (stack[..., 2] - stack[..., 0] ** 2 - stack[..., 1] ** 2)
+    return np.stack([su, sv, su**2 + sv**2, share], axis=-1)
+
+
+def packed_levels(stack: FloatArray) -> npt.NDArray[np.float32]:
+    """All levels (q, 4) of a map (SIZE, SIZE, 4): third channel becomes the slopes' variance."""
+    out = np.empty((_START[-1], 4), dtype=np.float32)
+    for start, stop in itertools.pairwise(_START):
+        level = stack.reshape(-1, 4)
+        out[start:stop] = level
+        out[start:stop, 2] = np.maximum(
+            0.0, 0.5 * (level[:, 2] - level[:, 0] ** 2 - level[:, 1] ** 2)
         )
-        levels.append(level.reshape(-1, 4))
-        n = len(stack)
-        if n == 1:
-            return levels
-        stack = stack.reshape(n // 2, 2, n // 2, 2, 4).mean(axis=(1, 3))
+        n = len(stack) // 2
+        if n:
+            stack = stack.reshape(n, 2, n, 2, 4).mean(axis=(1, 3))
+    return out
 
 
 def _grid() -> tuple[FloatArray, FloatArray]:
@@ -65,10 +79,10 @@ def _grid() -> tuple[FloatArray, FloatArray]:
 def _noise(seed: int, length_u: float, length_v: float) -> FloatArray:
     """Tiled Gaussian noise of unit deviation and given correlation lengths [cells]."""
     rng = np.random.default_rng(seed)
-    k = 2 * np.pi * np.fft.fftfreq(SIZE, d=CELLS / SIZE)
-    gain = np.exp(-0.5 * ((k[None, :] * length_u) ** 2 + (k[:, None] * length_v) ** 2) / 2)
+    k, half = (2 * np.pi * f(SIZE, d=CELLS / SIZE) for f in (np.fft.fftfreq, np.fft.rfftfreq))
+    gain = np.exp(-0.25 * (k[:, None] * length_v) ** 2) * np.exp(-0.25 * (half * length_u) ** 2)
     gain[0, 0] = 0.0
-    field = np.fft.ifft2(np.fft.fft2(rng.standard_normal((SIZE, SIZE))) * gain).real
+    field = np.fft.irfft2(np.fft.rfft2(rng.standard_normal((SIZE, SIZE))) * gain, s=(SIZE, SIZE))
     return np.asarray(field / field.std())
 
 
@@ -79,15 +93,8 @@ def _cell_distances(seed: int) -> tuple[FloatArray, FloatArray]:
     x, y = _grid()
     # Bend the cells so that their borders curve as the folds between pebbles do.
     x, y = x + 0.16 * _noise(seed + 1, 0.7, 0.7), y + 0.16 * _noise(seed + 2, 0.7, 0.7)
-    i, j = np.floor(x).astype(int), np.floor(y).astype(int)
-    first = np.full(x.shape, np.inf)
-    second = np.full(x.shape, np.inf)
-    for dj in (-2, -1, 0, 1, 2):
-        for di in (-2, -1, 0, 1, 2):
-            point = jitter[(j + dj) % CELLS, (i + di) % CELLS]
-            d = np.hypot(i + di + point[..., 0] - x, j + dj + point[..., 1] - y)
-            second = np.minimum(second, np.maximum(first, d))
-            first = np.minimum(first, d)
+    first, second = np.empty(x.shape), np.empty(x.shape)
+    two_nearest(jitter, x, y, first, second)
     return first, second
 
 

@@ -27,6 +27,8 @@ MATERIAL = np.dtype(
         ("texture", np.int64),
         ("texture_scale", np.float64),
         ("texture_depth", np.float64),
+        ("perforation_pitch", np.float64),
+        ("perforation_diameter", np.float64),
     ]
 )
 
@@ -128,24 +130,9 @@ def lookup_mean(table, roughness):
 
 
 @leaf()
-def E_parts(tables, roughness, mu):
-    """Karis 2013: scale and bias (A, B) of the GGX albedo F0 A + F90 B."""
-    i, a = cell(roughness, ROUGHNESS_LOW, 1.0, tables.scale.shape[0])
-    j, b = cell(np.sqrt(mu), 0.0, 1.0, tables.scale.shape[1])
-    return _bilinear(tables.scale, i, a, j, b), _bilinear(tables.bias, i, a, j, b)
-
-
-@leaf()
 def E_mean(tables, roughness):
     """Hemisphere mean of the albedo of a lobe with F = 1."""
     return lookup_mean(tables.scale_mean, roughness) + lookup_mean(tables.bias_mean, roughness)
-
-
-@leaf()
-def E_GGX(parts, mean, f0, f90):
-    """Kulla and Conty 2017: reflected share of one GGX lobe with all its bounces."""
-    a, b = parts
-    return f0 * a + f90 * b + F_multiple(f0, f90, mean) * (1.0 - a - b)
 
 
 @leaf()
@@ -161,22 +148,62 @@ def sheen_share(material):
     return strongest * (1.0 - material.metalness)
 
 
-@leaf()
-def passed(tables, material, parts, mean, mu):
-    """Light left at one direction: (below the coat, below coat and nap, to the diffuse base).
+class Means(NamedTuple):
+    """Hemisphere means of base and coat, and the share that their repeated bounces keep."""
 
-    ``parts, mean``: of the base's own lobe at this direction.
+    base: float
+    again: float
+    coat: float
+    coat_again: float
+
+
+@leaf()
+def means_of(tables, material, roughness):
+    """Means at the base's roughness."""
+    base, coat, coat_again = E_mean(tables, roughness), 1.0, 0.0
+    if coat_share(material) > 0.0:
+        coat = E_mean(tables, material.coat_roughness)
+        coat_again = F_multiple(COAT_F0, 1.0, coat)
+    return Means(base, F_multiple(material.f0, F90(material.f0), base), coat, coat_again)
+
+
+class Layers(NamedTuple):
+    """What happens to light at one direction.
+
+    ``scale, bias``: albedo of the base's lobe; ``coat_lost``: share that the coat's lobe reflects
+    more than once; ``coat, nap, base``: light left below the coat, below coat and nap, and for the
+    diffuse base.
     """
-    coat = nap = 1.0
+
+    scale: float
+    bias: float
+    coat_lost: float
+    coat: float
+    nap: float
+    base: float
+
+
+@leaf()
+def layers_at(tables, material, roughness, means, mu):
+    """Layers at cosine ``mu``."""
+    j, b = cell(np.sqrt(mu), 0.0, 1.0, tables.scale.shape[1])
+    i, a = cell(roughness, ROUGHNESS_LOW, 1.0, tables.scale.shape[0])
+    scale, bias = _bilinear(tables.scale, i, a, j, b), _bilinear(tables.bias, i, a, j, b)
+    coat, nap, lost = 1.0, 1.0, 0.0
     share = coat_share(material)
     if share > 0.0:
-        r = material.coat_roughness
-        coat -= share * E_GGX(E_parts(tables, r, mu), E_mean(tables, r), COAT_F0, 1.0)
+        i, a = cell(material.coat_roughness, ROUGHNESS_LOW, 1.0, tables.scale.shape[0])
+        low, high = _bilinear(tables.scale, i, a, j, b), _bilinear(tables.bias, i, a, j, b)
+        lost = 1.0 - low - high
+        coat -= share * (COAT_F0 * low + high + means.coat_again * lost)
     share = sheen_share(material)
     if share > 0.0:
-        nap -= share * lookup(tables.sheen, material.sheen_roughness, mu)
+        i, a = cell(material.sheen_roughness, ROUGHNESS_LOW, 1.0, tables.sheen.shape[0])
+        nap -= share * _bilinear(tables.sheen, i, a, j, b)
     nap *= coat
-    return coat, nap, nap * (1.0 - E_GGX(parts, mean, material.f0, F90(material.f0)))
+    f0 = material.f0
+    reflected = f0 * scale + F90(f0) * bias + means.again * (1.0 - scale - bias)
+    return Layers(scale, bias, lost, coat, nap, nap * (1.0 - reflected))
 
 
 @leaf()
@@ -189,7 +216,8 @@ def alphas(roughness, anisotropy):
 class View(NamedTuple):
     """What the BRDF needs of one surface point and view, whatever the light.
 
-    ``table_roughness``: of the narrower axis, so that energy added back is never too much.
+    ``table_roughness``: of the narrower axis, so that energy added back is never too much;
+    ``f0, f90, again``: of the base's lobe, per channel.
     """
 
     ToV: float
@@ -198,64 +226,78 @@ class View(NamedTuple):
     alpha_x: float
     alpha_y: float
     table_roughness: float
-    mean: float
-    lost: float
-    coat: float
-    nap: float
-    base: float
+    means: Means
+    layers: Layers
     colour: tuple[float, float, float]
+    f0: tuple[float, float, float]
+    f90: tuple[float, float, float]
+    again: tuple[float, float, float]
 
 
 @leaf()
-def view_of(tables, material, roughness, share, lighter, ToV, BoV, NoV):
-    """View of a point: ``share`` scales the base colour, ``lighter`` then takes it to white."""
+def view_of(tables, material, roughness, colour, ToV, BoV, NoV):
+    """View of a point with a base colour."""
     ax, ay = alphas(roughness, material.anisotropy)
     narrow = np.sqrt(min(ax, ay))
-    mean = E_mean(tables, narrow)
-    parts = E_parts(tables, narrow, NoV)
-    coat, nap, base = passed(tables, material, parts, mean, NoV)
-    a = material.albedo
-    rest = (1.0 - lighter) * share
-    colour = (a[0] * rest + lighter, a[1] * rest + lighter, a[2] * rest + lighter)
-    lost = 1.0 - parts[0] - parts[1]
-    return View(ToV, BoV, NoV, ax, ay, narrow, mean, lost, coat, nap, base, colour)
+    means = means_of(tables, material, narrow)
+    layers = layers_at(tables, material, narrow, means, NoV)
+    m, f0, mean = material.metalness, material.f0, means.base
+    # Dielectric and metal in linear mixture, so energy mixes too.
+    if m == 0.0:
+        low, high = (f0, f0, f0), (F90(f0), F90(f0), F90(f0))
+        again = (means.again, means.again, means.again)
+        return View(ToV, BoV, NoV, ax, ay, narrow, means, layers, colour, low, high, again)
+    r, g, b = colour
+    low = ((1.0 - m) * f0 + m * r, (1.0 - m) * f0 + m * g, (1.0 - m) * f0 + m * b)
+    f90 = (1.0 - m) * F90(f0)
+    high = (f90 + m * F90(r), f90 + m * F90(g), f90 + m * F90(b))
+    again = (
+        F_multiple(low[0], high[0], mean),
+        F_multiple(low[1], high[1], mean),
+        F_multiple(low[2], high[2], mean),
+    )
+    return View(ToV, BoV, NoV, ax, ay, narrow, means, layers, colour, low, high, again)
 
 
 @leaf()
-def _reflectance(material, colour):
-    """F0 and F90 of the base: dielectric and metal in linear mixture, so energy mixes too."""
-    m = material.metalness
-    f0 = (1.0 - m) * material.f0 + m * colour
-    return f0, (1.0 - m) * F90(material.f0) + m * F90(colour)
+def _widened(alpha, more):
+    """Width of a lobe whose slopes vary by ``more`` in addition."""
+    return np.sqrt(alpha * alpha + more) if more > 1e-3 * alpha * alpha else alpha
 
 
 @leaf()
-def brdf(tables, material, coupling, view, ToL, BoL, NoL, out):
+def brdf(tables, material, coupling, view, wider, ToL, BoL, NoL, out):
     """BRDF [1/sr] into ``out`` (3,); both cosines above 0.
 
-    ``coupling``: mean of what reaches the diffuse base at this roughness.
+    ``coupling``: mean of what reaches the diffuse base at this roughness; ``wider``: added to the
+    squared width of the lobes, for a light that is not a point.
     """
     x, y, z = view.ToV + ToL, view.BoV + BoL, view.NoV + NoL
     inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
     ToH, BoH, NoH = x * inverse, y * inverse, z * inverse
     LoH = min(1.0, ToL * ToH + BoL * BoH + NoL * NoH)
-    lobe = D_GGX(view.alpha_x, view.alpha_y, ToH, BoH, NoH)
-    lobe *= V_SmithGGXCorrelated(
-        view.alpha_x, view.alpha_y, view.ToV, view.BoV, view.NoV, ToL, BoL, NoL
-    )
-    parts = E_parts(tables, view.table_roughness, NoL)
-    coat, nap, base = passed(tables, material, parts, view.mean, NoL)
-    again = view.lost * (1.0 - parts[0] - parts[1]) / (np.pi * (1.0 - view.mean))
-    diffuse = (1.0 - material.metalness) * view.base * base / (np.pi * coupling)
-    nap = min(view.nap, nap)
+    ax, ay = _widened(view.alpha_x, wider), _widened(view.alpha_y, wider)
+    lobe = D_GGX(ax, ay, ToH, BoH, NoH)
+    lobe *= V_SmithGGXCorrelated(ax, ay, view.ToV, view.BoV, view.NoV, ToL, BoL, NoL)
+    here, there = view.layers, layers_at(tables, material, view.table_roughness, view.means, NoL)
+    lost = (1.0 - here.scale - here.bias) * (1.0 - there.scale - there.bias)
+    lost /= np.pi * (1.0 - view.means.base)
+    diffuse = (1.0 - material.metalness) * here.base * there.base / (np.pi * coupling)
+    nap = min(here.nap, there.nap)
     for c in range(3):
-        f0, f90 = _reflectance(material, view.colour[c])
-        specular = F_Schlick(f0, f90, LoH) * lobe + F_multiple(f0, f90, view.mean) * again
+        specular = F_Schlick(view.f0[c], view.f90[c], LoH) * lobe + view.again[c] * lost
         out[c] = nap * specular + view.colour[c] * diffuse
     if sheen_share(material) > 0.0:
-        _add_sheen(tables, material, min(view.coat, coat), view.NoV, NoL, NoH, out)
-    if coat_share(material) > 0.0:
-        _add_coat(tables, material, view, ToL, BoL, NoL, NoH, LoH, out)
+        _add_sheen(tables, material, min(here.coat, there.coat), view.NoV, NoL, NoH, out)
+    share = coat_share(material)
+    if share > 0.0:
+        a = _widened(material.coat_roughness**2, wider)
+        lobe = D_GGX(a, a, np.sqrt(max(0.0, 1.0 - NoH * NoH)), 0.0, NoH)
+        lobe *= V_SmithGGXCorrelated(a, a, view.ToV, view.BoV, view.NoV, ToL, BoL, NoL)
+        again = here.coat_lost * there.coat_lost / (np.pi * (1.0 - view.means.coat))
+        coat = share * (F_Schlick(COAT_F0, 1.0, LoH) * lobe + view.means.coat_again * again)
+        for c in range(3):
+            out[c] += coat
 
 
 @leaf()
@@ -267,29 +309,19 @@ def _add_sheen(tables, material, share, NoV, NoL, NoH, out):
 
 
 @leaf()
-def _add_coat(tables, material, view, ToL, BoL, NoL, NoH, LoH, out):
-    r = material.coat_roughness
-    a, mean = r * r, E_mean(tables, r)
-    lobe = D_GGX(a, a, np.sqrt(max(0.0, 1.0 - NoH * NoH)), 0.0, NoH)
-    lobe *= V_SmithGGXCorrelated(a, a, view.ToV, view.BoV, view.NoV, ToL, BoL, NoL)
-    av, bv = E_parts(tables, r, view.NoV)
-    al, bl = E_parts(tables, r, NoL)
-    again = (1.0 - av - bv) * (1.0 - al - bl) / (np.pi * (1.0 - mean))
-    again *= F_multiple(COAT_F0, 1.0, mean)
-    for c in range(3):
-        out[c] += coat_share(material) * (F_Schlick(COAT_F0, 1.0, LoH) * lobe + again)
+def albedo_towards(tables, material, view, specular, diffuse):
+    """Share of a light equal from everywhere that leaves towards the view.
 
-
-@leaf()
-def albedo_towards(tables, material, view, out):
-    """Share of a light equal from everywhere that leaves towards the view, into ``out`` (3,)."""
-    parts = E_parts(tables, view.table_roughness, view.NoV)
-    metal, sheen = material.metalness, 0.0
+    Into ``specular`` (3,): by the base's lobe; into ``diffuse`` (3,): by nap and diffuse base.
+    Returns the coat's share.
+    """
+    here, metal, sheen = view.layers, material.metalness, 0.0
     if sheen_share(material) > 0.0:
-        sheen = view.coat * (1.0 - metal)
+        sheen = here.coat * (1.0 - metal)
         sheen *= lookup(tables.sheen, material.sheen_roughness, view.NoV)
+    lost = 1.0 - here.scale - here.bias
     for c in range(3):
-        f0, f90 = _reflectance(material, view.colour[c])
-        out[c] = view.nap * E_GGX(parts, view.mean, f0, f90)
-        out[c] += (1.0 - metal) * view.colour[c] * view.base
-        out[c] += sheen * material.sheen[c] + (1.0 - view.coat)
+        lobe = view.f0[c] * here.scale + view.f90[c] * here.bias + view.again[c] * lost
+        specular[c] = here.nap * lobe
+        diffuse[c] = (1.0 - metal) * view.colour[c] * here.base + sheen * material.sheen[c]
+    return 1.0 - here.coat

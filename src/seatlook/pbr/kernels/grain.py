@@ -15,11 +15,13 @@ class Textures(NamedTuple):
     """All relief maps with their mip levels, ``texels`` (k, q, 4) float32.
 
     Channels: slope along u and v and their mean variance, for a depth of one cell; then the share
-    of the base colour that the hollows leave. ``start`` (levels,): where each level begins;
-    ``size``: texels across level 0; ``cells``: cells of the grain across a tile.
+    of the base colour that the hollows leave. ``colours`` (k, q, 4) float32: base colour and
+    roughness of the measured maps, which follow the ``BUILT_IN`` ones. ``start`` (levels,): where
+    each level begins; ``size``: texels across level 0; ``cells``: cells of the grain across a tile.
     """
 
     texels: npt.NDArray[np.float32]
+    colours: npt.NDArray[np.float32]
     start: npt.NDArray[np.int64]
     size: int
     cells: float
@@ -27,12 +29,13 @@ class Textures(NamedTuple):
 
 # Order of the maps, and share of the colour by which a stroke of the hand changes the nap.
 LEATHER, SUEDE, WEAVE = 0, 1, 2
+BUILT_IN = 3
 _STROKE = 0.035
 
 
 @leaf()
-def _bilinear(textures, which, level, u, v):
-    """Tiled texel value at (u, v) in tiles, as four numbers."""
+def _bilinear(t, textures, level, u, v):
+    """Tiled value of one map ``t`` at (u, v) in tiles, as four numbers."""
     n = textures.size >> level
     x, y = u * n - 0.5, v * n - 0.5
     i, j = int(np.floor(x)), int(np.floor(y))
@@ -40,7 +43,6 @@ def _bilinear(textures, which, level, u, v):
     base = textures.start[level]
     top, low = base + (j & (n - 1)) * n, base + ((j + 1) & (n - 1)) * n
     left, right = i & (n - 1), (i + 1) & (n - 1)
-    t = textures.texels[which]
     w0, w1, w2, w3 = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
     p, q, r, s = top + left, top + right, low + left, low + right
     return (
@@ -52,12 +54,8 @@ def _bilinear(textures, which, level, u, v):
 
 
 @leaf()
-def grain(textures, material, u, v, width):
-    """Slopes, roughness and colour share of a material's relief for a sample ``width`` [m] wide.
-
-    Olano and Baker 2010 (LEAN mapping): the variance of the slopes that a level averages away
-    widens the lobe, alpha^2 + 2 variance, so a minified grain neither sparkles nor turns smooth.
-    """
+def _filtered(t, textures, material, u, v, width):
+    """Value of one map for a sample ``width`` [m] wide."""
     tile = textures.cells * material.texture_scale
     texel = tile / textures.size
     level = max(0.0, np.log2(width / texel))
@@ -65,16 +63,34 @@ def grain(textures, material, u, v, width):
     fine = min(int(level), last)
     coarse = min(fine + 1, last)
     mix = min(1.0, level - fine)
-    fine_value = _bilinear(textures, material.texture, fine, u / tile, v / tile)
-    coarse_value = _bilinear(textures, material.texture, coarse, u / tile, v / tile)
-    su, sv, variance, share = (
-        fine_value[0] + mix * (coarse_value[0] - fine_value[0]),
-        fine_value[1] + mix * (coarse_value[1] - fine_value[1]),
-        fine_value[2] + mix * (coarse_value[2] - fine_value[2]),
-        fine_value[3] + mix * (coarse_value[3] - fine_value[3]),
+    low = _bilinear(t, textures, fine, u / tile, v / tile)
+    high = _bilinear(t, textures, coarse, u / tile, v / tile)
+    return (
+        low[0] + mix * (high[0] - low[0]),
+        low[1] + mix * (high[1] - low[1]),
+        low[2] + mix * (high[2] - low[2]),
+        low[3] + mix * (high[3] - low[3]),
     )
+
+
+@leaf()
+def measured(textures, material, u, v, width):
+    """Base colour, as three numbers, and roughness of a measured map."""
+    which = material.texture - BUILT_IN
+    return _filtered(textures.colours[which], textures, material, u, v, width)
+
+
+@leaf()
+def grain(textures, material, roughness, u, v, width):
+    """Slopes, roughness and colour share of a material's relief for a sample ``width`` [m] wide.
+
+    Olano and Baker 2010 (LEAN mapping): the variance of the slopes that a level averages away
+    widens the lobe, alpha^2 + 2 variance, so a minified grain neither sparkles nor turns smooth.
+    """
+    texels = textures.texels[material.texture]
+    su, sv, variance, share = _filtered(texels, textures, material, u, v, width)
     steep = material.texture_depth / material.texture_scale
-    alpha = material.roughness**2
+    alpha = roughness**2
     alpha = np.sqrt(alpha * alpha + 2.0 * steep * steep * variance)
     if material.texture == SUEDE:
         # Marks of the hand: the nap lies this way or that over a few centimetres. They change the
@@ -83,3 +99,22 @@ def grain(textures, material, u, v, width):
         mark = 4.0 * smooth(u / 0.05 + bend, v / 0.03 + bend, 1)
         share *= 1.0 + _STROKE * (mark / np.sqrt(1.0 + mark * mark) - 1.0)
     return steep * su, steep * sv, min(1.0, np.sqrt(alpha)), share
+
+
+@leaf()
+def holes(pitch, diameter, u, v, width):
+    """Share of a sample ``width`` [m] wide that falls into punched holes in staggered rows."""
+    height = pitch * np.sqrt(0.75)
+    mean = 0.25 * np.pi * diameter * diameter / (pitch * height)
+    # Holes closer than a sample show as their mean.
+    blur = min(1.0, max(0.0, width / pitch - 0.5))
+    if blur == 1.0:
+        return mean
+    line, nearest = np.floor(v / height), np.inf
+    for j in range(2):
+        y = v - (line + j) * height
+        x = u / pitch - 0.5 * ((line + j) % 2.0)
+        x = (x - np.floor(x + 0.5)) * pitch
+        nearest = min(nearest, x * x + y * y)
+    inside = (0.5 * diameter - np.sqrt(nearest)) / max(width, 1e-9) + 0.5
+    return (1.0 - blur) * min(1.0, max(0.0, inside)) + blur * mean

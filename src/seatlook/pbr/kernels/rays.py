@@ -7,8 +7,8 @@ from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.bvh import nearest, new_stack, occluded
+from seatlook.pbr.kernels.light import SMALL, across, angle_of, arriving, panorama_towards
 from seatlook.pbr.kernels.noise import even
-from seatlook.pbr.kernels.shade import arriving
 from seatlook.pbr.kernels.surface import (
     along,
     blend,
@@ -24,35 +24,27 @@ from seatlook.pbr.kernels.surface import (
 
 # Rays start this far [m] above the surface: above rounding, below any fold.
 _ABOVE = 2e-5
-# Beyond this cosine not even the grain turns to the light.
-_TURNED = -0.15
-_EMPTY, _HIDDEN, _LIT, _AWAY = 0, 1, 2, 3
+_EMPTY, _HIDDEN, _AWAY, _LIT, _GRAZING = 0, 1, 2, 3, 4
 
 
 @leaf()
-def _across(l):
-    """Two unit vectors across ``l``."""
-    a = (1.0, 0.0, 0.0) if abs(l[0]) < 0.6 else (0.0, 1.0, 0.0)
-    t = unit(cross(l, a))
-    return t, cross(l, t)
-
-
-@leaf()
-def _reaches(bvh, lights, sizes, k, p, n, a, b, stack):
-    """Whether point (a, b) of light k's disc, in the unit square, is seen from ``p``."""
+def _to_disc(lights, k, p, a, b):
+    """Unit direction to point (a, b), in the unit square, of light k's disc; its distance."""
     l, _ = arriving(lights, k, p)
-    t, s = _across(l)
+    t, s = across(l)
     r, phi = np.sqrt(a), 2.0 * np.pi * b
     x, y = r * np.cos(phi), r * np.sin(phi)
     if lights.near[k] == 0:
-        half = np.tan(0.5 * sizes[k])
-        d = unit(along(along(l, half * x, t), half * y, s))
-        far = np.inf
-    else:
-        to = minus(row(lights.vector, k), p)
-        d = along(along(to, sizes[k] * x, t), sizes[k] * y, s)
-        far = np.sqrt(dot(d, d))
-        d = unit(d)
+        half = np.tan(0.5 * lights.size[k])
+        return unit(along(along(l, half * x, t), half * y, s)), np.inf
+    to = minus(row(lights.vector, k), p)
+    d = along(along(to, lights.size[k] * x, t), lights.size[k] * y, s)
+    return unit(d), np.sqrt(dot(d, d))
+
+
+@leaf()
+def _reaches(bvh, p, n, d, far, stack):
+    """Whether a ray from ``p`` along ``d`` comes ``far``; ``n``: normal of the plane it leaves."""
     side = _ABOVE if dot(n, d) > 0.0 else -_ABOVE
     o = along(p, side, n)
     return not occluded(bvh, o[0], o[1], o[2], d[0], d[1], d[2], 0.0, far, stack)
@@ -71,7 +63,7 @@ def _start(mesh, eye, f, i, j):
 
 
 @njit(cache=True)
-def _first_look(bvh, mesh, eye, ids, lights, sizes, k, factor, state):
+def _first_look(bvh, mesh, eye, ids, lights, k, factor, state):
     """One ray per pixel to the middle of the light."""
     stack = new_stack()
     for y in range(state.shape[0]):
@@ -82,29 +74,70 @@ def _first_look(bvh, mesh, eye, ids, lights, sizes, k, factor, state):
                 if ids[j, i] < 0:
                     continue
                 p, plane, n = _start(mesh, eye, ids[j, i], i, j)
-                l, _ = arriving(lights, k, p)
-                if dot(n, l) <= _TURNED:
+                l, far = _to_disc(lights, k, p, 0.0, 0.0)
+                angle = angle_of(lights, k, p)
+                c = dot(n, l)
+                if c <= -angle:
                     state[y, x] = _AWAY
-                elif _reaches(bvh, lights, sizes, k, p, plane, 0.0, 0.0, stack):
+                elif c < angle and angle >= SMALL:
+                    state[y, x] = _GRAZING
+                elif _reaches(bvh, p, plane, l, far, stack):
                     state[y, x] = _LIT
                 else:
                     state[y, x] = _HIDDEN
                 break
 
 
+@njit(cache=True)
+def _counts(state, first, last):
+    """Number of pixels of some kinds above and to the left of each corner, (h + 1, w + 1)."""
+    total = np.zeros((state.shape[0] + 1, state.shape[1] + 1), np.int32)
+    for y in range(state.shape[0]):
+        line = 0
+        for x in range(state.shape[1]):
+            line += first <= state[y, x] <= last
+            total[y + 1, x + 1] = total[y, x + 1] + line
+    return total
+
+
 @leaf()
-def _mixed(state, x, y, reach):
-    """Whether lit and hidden pixels meet within ``reach`` of this one."""
-    lit = hidden = False
-    for j in range(max(0, y - reach), min(state.shape[0], y + reach + 1)):
-        for i in range(max(0, x - reach), min(state.shape[1], x + reach + 1)):
-            lit |= state[j, i] == _LIT
-            hidden |= state[j, i] == _HIDDEN
-    return lit and hidden
+def _within(total, x, y, reach):
+    """Whether a counted pixel lies within ``reach`` of this one."""
+    y0, y1 = max(0, y - reach), min(total.shape[0] - 1, y + reach + 1)
+    x0, x1 = max(0, x - reach), min(total.shape[1] - 1, x + reach + 1)
+    return total[y1, x1] - total[y0, x1] - total[y1, x0] + total[y0, x0] > 0
+
+
+@leaf()
+def _share_seen(bvh, lights, k, start, shift, first, step, total, stack):
+    """Share of the points of light k above the horizon that a sample sees.
+
+    Points ``first, first + step, ...`` of ``total`` of Roberts' R2 sequence, shifted. The part
+    below the horizon is the shading's to leave out.
+    """
+    p, plane, n = start
+    seen = count = 0
+    l, far = _to_disc(lights, k, p, 0.0, 0.0)
+    c, angle = dot(n, l), angle_of(lights, k, p)
+    if c <= -angle:
+        return 0.0
+    for index in range(first, total, step):
+        a = (index + shift[0]) / total
+        b = (shift[1] + 0.7548776662466927 * index) % 1.0
+        d, far = _to_disc(lights, k, p, a, b)
+        if dot(n, d) > 0.0:
+            count += 1
+            seen += _reaches(bvh, p, plane, d, far, stack)
+    if count:
+        return seen / count
+    # Little of the light has not set: its upper rim stands for it.
+    up = unit(along(n, -c, l))
+    rim = unit(along(l, 0.9 * angle, up))
+    return 1.0 if _reaches(bvh, p, plane, rim, far, stack) else 0.0
 
 
 @njit(cache=True)
-def shadows(bvh, mesh, eye, ids, lights, sizes, k, factor, rays, reach, out):
+def shadows(bvh, mesh, eye, ids, lights, k, factor, rays, reach, out):
     """Share of light k that each sample sees, into ``out`` like ``ids``.
 
     Where a pixel and its neighbours within ``reach`` agree, one ray tells; near a shadow's edge
@@ -112,37 +145,29 @@ def shadows(bvh, mesh, eye, ids, lights, sizes, k, factor, rays, reach, out):
     """
     height, width = ids.shape[0] // factor, ids.shape[1] // factor
     state = np.zeros((height, width), np.uint8)
-    _first_look(bvh, mesh, eye, ids, lights, sizes, k, factor, state)
-    stack = new_stack()
+    _first_look(bvh, mesh, eye, ids, lights, k, factor, state)
+    lit, dark = _counts(state, _LIT, _LIT), _counts(state, _HIDDEN, _AWAY)
+    stack, step = new_stack(), factor * factor
     for y in range(height):
         for x in range(width):
             if state[y, x] == _EMPTY:
                 continue
-            edge = _mixed(state, x, y, reach)
-            for q in range(factor * factor):
+            edge = state[y, x] == _GRAZING or state[y, x] == _AWAY
+            edge = edge or (_within(lit, x, y, reach) and _within(dark, x, y, reach))
+            shift = (even(x, y, 2 * k), even(x, y, 2 * k + 1))
+            for q in range(step):
                 i, j = x * factor + q % factor, y * factor + q // factor
                 if ids[j, i] < 0:
                     continue
-                if not edge and state[y, x] != _AWAY:
+                if not edge:
                     out[j, i] = 1.0 if state[y, x] == _LIT else 0.0
                     continue
-                p, plane, n = _start(mesh, eye, ids[j, i], i, j)
-                if dot(n, arriving(lights, k, p)[0]) <= _TURNED:
-                    out[j, i] = 0.0
-                    continue
-                u, v, seen = even(x, y, 2 * k), even(x, y, 2 * k + 1), 0
-                total = rays * factor * factor
-                for s in range(rays):
-                    # Roberts' R2 sequence over all rays of a pixel, shifted per pixel.
-                    index = s * factor * factor + q
-                    a = (index + u) / total
-                    b = (v + 0.7548776662466927 * index) % 1.0
-                    seen += _reaches(bvh, lights, sizes, k, p, plane, a, b, stack)
-                out[j, i] = seen / rays
+                start = _start(mesh, eye, ids[j, i], i, j)
+                out[j, i] = _share_seen(bvh, lights, k, start, shift, q, step, rays * step, stack)
 
 
 @njit(cache=True)
-def irradiance(bvh, mesh, lights, sizes, out):
+def irradiance(bvh, mesh, lights, out):
     """Direct irradiance [lux] (n, 3) at every vertex, one ray per light."""
     stack = new_stack()
     for i in range(len(out)):
@@ -153,9 +178,34 @@ def irradiance(bvh, mesh, lights, sizes, out):
             c = dot(l, n)
             if c <= 0.0:
                 continue
-            if _reaches(bvh, lights, sizes, k, along(p, 5 * _ABOVE, n), n, 0.0, 0.0, stack):
+            far = _to_disc(lights, k, p, 0.0, 0.0)[1]
+            if _reaches(bvh, along(p, 5 * _ABOVE, n), n, l, far, stack):
                 for q in range(3):
                     out[i, q] += c * e[q]
+
+
+@leaf()
+def _direction(n, i, q, strata):
+    """Direction q of strata^2 cosine-weighted ones around ``n``, turned per vertex i."""
+    t, s = across(n)
+    turn, shift = even(i, 0, 0), even(i, 1, 0)
+    a = (q // strata + shift) / strata
+    phi = 2.0 * np.pi * (q % strata + turn) / strata
+    r, up = np.sqrt(a), np.sqrt(1.0 - a)
+    return along(along((n[0] * up, n[1] * up, n[2] * up), r * np.cos(phi), t), r * np.sin(phi), s)
+
+
+@njit(cache=True)
+def sky_seen(mesh, hits, strata, panorama, out):
+    """Mean luminance (n, 3) of a panorama's smoothest level over the open directions."""
+    for i in range(len(hits)):
+        n = row(mesh.normals, i)
+        out[i] = 0.0
+        for q in range(strata * strata):
+            if hits[i, q] == -1:
+                seen = panorama_towards(panorama, 0.0, _direction(n, i, q, strata))
+                for k in range(3):
+                    out[i, k] += seen[k] / (strata * strata)
 
 
 @njit(cache=True)
@@ -167,16 +217,9 @@ def gather(bvh, mesh, strata, hits):
     stack = new_stack()
     for i in range(len(hits)):
         p, n = row(mesh.vertices, i), row(mesh.normals, i)
-        t, s = _across(n)
         o = along(p, 10 * _ABOVE, n)
-        turn, shift = even(i, 0, 0), even(i, 1, 0)
         for q in range(strata * strata):
-            a = (q // strata + shift) / strata
-            phi = 2.0 * np.pi * (q % strata + turn) / strata
-            r, up = np.sqrt(a), np.sqrt(1.0 - a)
-            d = along(
-                along((n[0] * up, n[1] * up, n[2] * up), r * np.cos(phi), t), r * np.sin(phi), s
-            )
+            d = _direction(n, i, q, strata)
             leaf, _, _, _ = nearest(bvh, o[0], o[1], o[2], d[0], d[1], d[2], 0.0, stack)
             if leaf < 0:
                 hits[i, q] = -1

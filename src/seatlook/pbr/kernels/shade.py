@@ -10,15 +10,22 @@ from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, view_of
-from seatlook.pbr.kernels.grain import Textures, grain
-from seatlook.pbr.kernels.stitch import Thread, away_from_seam, relief, seam_at, tilt
+from seatlook.pbr.kernels.grain import BUILT_IN, Textures, grain, holes, measured
+from seatlook.pbr.kernels.light import (
+    SMALL,
+    above_horizon,
+    angle_of,
+    arriving,
+    panorama_towards,
+    towards_part,
+)
+from seatlook.pbr.kernels.stitch import Thread, away_from_seam, reach, relief, seam_at, tilt
 from seatlook.pbr.kernels.surface import (
     along,
     blend,
     cross,
     dot,
     meet,
-    minus,
     ray_through,
     row,
     row_of,
@@ -26,24 +33,10 @@ from seatlook.pbr.kernels.surface import (
 )
 from seatlook.pbr.kernels.tables import coupling_at
 
-
-class Lights(NamedTuple):
-    """``near`` (k,): 0 far, 1 near; ``vector`` (k, 3); ``intensity`` (k, 3) [lux] or [cd]."""
-
-    near: npt.NDArray[np.int64]
-    vector: npt.NDArray[np.float64]
-    intensity: npt.NDArray[np.float64]
-
-
-class Around(NamedTuple):
-    """What arrives from elsewhere, per vertex, as luminance equal from all open directions.
-
-    ``sky`` (n, 3) [cd/m2]: the share of the sky not covered; ``bounce`` (n, 3) [cd/m2]: what the
-    cover itself sends.
-    """
-
-    sky: npt.NDArray[np.float64]
-    bounce: npt.NDArray[np.float64]
+# Pixels across the squares in which a picture is shaded.
+_TILE = 16
+# Cosine between normals of neighbouring samples that count as one: 2 degrees.
+_UNBENT = 0.9994
 
 
 class Look(NamedTuple):
@@ -58,17 +51,6 @@ class Look(NamedTuple):
     tables: Tables
     textures: Textures
     thread: Thread
-
-
-@leaf()
-def arriving(lights, k, p):
-    """Unit direction to light k and irradiance (3,) [lux] on a plane facing it."""
-    if lights.near[k] == 0:
-        return row(lights.vector, k), row(lights.intensity, k)
-    to = minus(row(lights.vector, k), p)
-    s = 1.0 / dot(to, to)
-    i = row(lights.intensity, k)
-    return unit(to), (i[0] * s, i[1] * s, i[2] * s)
 
 
 @leaf()
@@ -92,31 +74,49 @@ def _frame(n, warp):
 
 
 @leaf()
-def sample(mesh, look, lights, around, f, hit, visible, work):
-    """Radiance of one sample into ``work[0]``; ``work`` is (2, 3).
+def _blend_one(values, faces, f, b1, b2):
+    """Value of a vertex table (n,) inside face f."""
+    i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+    return (1.0 - b1 - b2) * values[i] + b1 * values[j] + b2 * values[k]
 
-    ``hit``: (weight, weight, distance, face normal, unit ray, angle between samples);
-    ``visible`` (k,): share of each light that is not hidden.
-    """
-    b1, b2, t, plane, ray, spread = hit
-    v = (-ray[0], -ray[1], -ray[2])
-    p = blend(mesh.vertices, mesh.faces, f, b1, b2)
-    n = unit(blend(mesh.normals, mesh.faces, f, b1, b2))
-    if dot(plane, v) < 0.0:
-        n = (-n[0], -n[1], -n[2])
-    n = _towards_eye(n, v)
-    material = look.materials[mesh.panel[f]]
-    warp, weft = _frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
-    roughness, share, lighter = material.roughness, 1.0, 0.0
-    if material.texture >= 0:
-        i, j, k = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
-        u = (1.0 - b1 - b2) * mesh.uv[i, 0] + b1 * mesh.uv[j, 0] + b2 * mesh.uv[k, 0]
-        w = (1.0 - b1 - b2) * mesh.uv[i, 1] + b1 * mesh.uv[j, 1] + b2 * mesh.uv[k, 1]
+
+@leaf()
+def _pattern_at(mesh, f, b1, b2):
+    """Pattern coordinates inside face f."""
+    i, j, k = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
+    b0 = 1.0 - b1 - b2
+    return (
+        b0 * mesh.uv[i, 0] + b1 * mesh.uv[j, 0] + b2 * mesh.uv[k, 0],
+        b0 * mesh.uv[i, 1] + b1 * mesh.uv[j, 1] + b2 * mesh.uv[k, 1],
+    )
+
+
+@leaf()
+def _detail(mesh, look, material, f, hit, n, v):
+    """Normal with relief and thread, base colour, roughness and light kept by the holes."""
+    b1, b2, t, plane, _, spread = hit
+    roughness, r, g, b = (
+        material.roughness,
+        material.albedo[0],
+        material.albedo[1],
+        material.albedo[2],
+    )
+    share, lighter, kept = 1.0, 0.0, 1.0
+    if material.texture >= 0 or material.perforation_diameter > 0.0:
+        u, w = _pattern_at(mesh, f, b1, b2)
         width = t * spread / np.sqrt(max(0.05, dot(n, v)))
-        su, sv, roughness, share = grain(look.textures, material, u, w, width)
-        n = unit(along(along(n, -su, warp), -sv, weft))
+        if material.texture >= 0:
+            warp, weft = _frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
+            if material.texture >= BUILT_IN:
+                r, g, b, roughness = measured(look.textures, material, u, w, width)
+            su, sv, roughness, share = grain(look.textures, material, roughness, u, w, width)
+            n = unit(along(along(n, -su, warp), -sv, weft))
+        if material.perforation_diameter > 0.0:
+            kept = 1.0 - holes(
+                material.perforation_pitch, material.perforation_diameter, u, w, width
+            )
     distance, arc = seam_at(mesh, f, b1, b2)
-    if distance < np.inf:
+    if distance < reach(look.thread):
         away, onward = away_from_seam(mesh, f)
         width = t * spread / np.sqrt(max(0.05, abs(dot(plane, v))))
         sa, so, left, covered = relief(look.thread, distance, arc, width)
@@ -124,30 +124,105 @@ def sample(mesh, look, lights, around, f, hit, visible, work):
         share *= left
         lighter = covered * look.thread.lighter
         roughness += covered * max(0.0, 0.6 - roughness)
+    share *= 1.0 - lighter
+    return n, (r * share + lighter, g * share + lighter, b * share + lighter), roughness, kept
+
+
+@leaf()
+def _point(q, part):
+    """Point of the light's disc for sample q; -1 and -2 are those that stand for two of four."""
+    if q >= 0:
+        return q
+    return 3 * part if q == -1 else 1 + part
+
+
+@leaf()
+def sample(mesh, look, lights, around, f, hit, q, visible, work):
+    """Radiance of one sample into ``work[0]``; ``work`` is (3, 3).
+
+    ``hit``: (weight, weight, distance, face normal, unit ray, angle between samples);
+    ``visible`` (k,): share of each light that is not hidden; ``q``: number of the sample in its
+    pixel, -1 or -2 where it is the first or second that stands for two.
+    """
+    b1, b2, _, plane, ray, _ = hit
+    v = (-ray[0], -ray[1], -ray[2])
+    p = blend(mesh.vertices, mesh.faces, f, b1, b2)
+    n = unit(blend(mesh.normals, mesh.faces, f, b1, b2))
+    if dot(plane, v) < 0.0:
+        n = (-n[0], -n[1], -n[2])
     n = _towards_eye(n, v)
-    warp, weft = _frame(n, warp)
+    material = look.materials[mesh.panel[f]]
+    n, colour, roughness, kept = _detail(mesh, look, material, f, hit, n, v)
+    n = _towards_eye(n, v)
+    warp, weft = _frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
     out, f_out = work[0], work[1]
-    view = view_of(
-        look.tables, material, roughness, share, lighter, dot(warp, v), dot(weft, v), dot(n, v)
-    )
-    albedo_towards(look.tables, material, view, f_out)
-    sky, bounce = (
-        blend(around.sky, mesh.faces, f, b1, b2),
-        blend(around.bounce, mesh.faces, f, b1, b2),
-    )
-    for c in range(3):
-        out[c] = f_out[c] * (sky[c] + bounce[c])
+    view = view_of(look.tables, material, roughness, colour, dot(warp, v), dot(weft, v), dot(n, v))
+    _from_around(mesh, look, around, f, b1, b2, material, view, n, v, work)
     mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
     for k in range(len(lights.near)):
         if visible[k] <= 0.0:
             continue
-        l, e = arriving(lights, k, p)
-        NoL = dot(n, l)
-        if NoL <= 1e-5:
-            continue
-        brdf(look.tables, material, mean, view, dot(warp, l), dot(weft, l), NoL, f_out)
+        middle, e = arriving(lights, k, p)
+        angle = angle_of(lights, k, p)
+        # A sample that stands for two looks at two points of the light.
+        parts = 2 if q < 0 and angle >= SMALL else 1
+        for part in range(parts):
+            l, wider = towards_part(lights, angle, middle, _point(q, part))
+            NoL = above_horizon(dot(n, l), angle / np.sqrt(len(lights.disc)))
+            if NoL <= 1e-5:
+                continue
+            brdf(look.tables, material, mean, view, wider, dot(warp, l), dot(weft, l), NoL, f_out)
+            for c in range(3):
+                out[c] += f_out[c] * NoL * e[c] * visible[k] / parts
+    for c in range(3):
+        out[c] *= kept
+
+
+@leaf()
+def _from_around(mesh, look, around, f, b1, b2, material, view, n, v, work):
+    """Light of the sky and of other faces that goes to the eye, into ``work[0]``."""
+    out, specular, diffuse = work[0], work[1], work[2]
+    coat = albedo_towards(look.tables, material, view, specular, diffuse)
+    sky = blend(around.sky, mesh.faces, f, b1, b2)
+    bounce = blend(around.bounce, mesh.faces, f, b1, b2)
+    if len(around.panorama) == 0:
         for c in range(3):
-            out[c] += f_out[c] * NoL * e[c] * visible[k]
+            out[c] = (specular[c] + coat + diffuse[c]) * (sky[c] + bounce[c])
+        return
+    mirror = along((-v[0], -v[1], -v[2]), 2.0 * dot(n, v), n)
+    share = _blend_one(around.open, mesh.faces, f, b1, b2)
+    base = panorama_towards(around.panorama, view.table_roughness, mirror)
+    top = base
+    if coat > 0.0:
+        top = panorama_towards(around.panorama, material.coat_roughness, mirror)
+    for c in range(3):
+        out[c] = (specular[c] + coat + diffuse[c]) * bounce[c] + diffuse[c] * sky[c]
+        out[c] += share * (specular[c] * base[c] + coat * top[c])
+
+
+@leaf()
+def _alike(mesh, ids, visibility, reach, x, y):
+    """Whether the 2 x 2 samples from (x, y) see one panel, unbent, unshadowed by an edge, no seam.
+
+    Half of them are enough then.
+    """
+    f = ids[y, x]
+    i, j, k = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
+    if min(mesh.seam[i, 0], mesh.seam[j, 0], mesh.seam[k, 0]) < reach:
+        return False
+    n = row(mesh.normals, i)
+    for q in range(1, 4):
+        g = ids[y + q // 2, x + q % 2]
+        for light in range(len(visibility)):
+            if visibility[light, y + q // 2, x + q % 2] != visibility[light, y, x]:
+                return False
+        if g == f:
+            continue
+        if g < 0 or mesh.panel[g] != mesh.panel[f]:
+            return False
+        if dot(row(mesh.normals, mesh.faces[g, 0]), n) < _UNBENT:
+            return False
+    return True
 
 
 @njit(cache=True)
@@ -155,16 +230,31 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, out):
     """Mean radiance of ``factor`` x ``factor`` samples added to each pixel of ``out`` (h, w, 3).
 
     ``ids`` (h factor, w factor): face per sample, -1 for none; ``visibility`` likewise, (k, ., .),
-    in 1/255. Returns the number of samples that hold something.
+    in 1/255. Returns the number of samples shaded: of 2 x 2 that are alike, only the diagonal is,
+    each for an area twice as large.
     """
-    work = np.zeros((2, 3))
-    weight = 1.0 / (factor * factor)
+    work = np.zeros((3, 3))
     visible = np.ones(len(lights.near))
     spread = np.sqrt(dot(row_of(eye.right), row_of(eye.right)))
     spread /= np.sqrt(dot(row_of(eye.first), row_of(eye.first)))
-    count = 0
-    for j in range(ids.shape[0]):
-        for i in range(ids.shape[1]):
+    count, near_seam = 0, reach(look.thread)
+    height, width = ids.shape[0] // factor, ids.shape[1] // factor
+    columns = -(-width // _TILE)
+    # By tiles: neighbours lie on the same faces, whose vertices are then still at hand.
+    for number in range(columns * -(-height // _TILE) * _TILE * _TILE):
+        tile, inside = number // (_TILE * _TILE), number % (_TILE * _TILE)
+        y = tile // columns * _TILE + inside // _TILE
+        x = tile % columns * _TILE + inside % _TILE
+        if y >= height or x >= width:
+            continue
+        pair = factor == 2 and ids[2 * y, 2 * x] >= 0
+        pair = pair and _alike(mesh, ids, visibility, near_seam, 2 * x, 2 * y)
+        weight = 0.5 if pair else 1.0 / (factor * factor)
+        wide = np.sqrt(2.0) * spread if pair else spread
+        for q in range(factor * factor):
+            if pair and q % 3:
+                continue
+            i, j = x * factor + q % factor, y * factor + q // factor
             f = ids[j, i]
             if f < 0:
                 continue
@@ -173,8 +263,11 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, out):
             b1, b2, t, plane = meet(mesh, eye, f, ray)
             for k in range(len(visible)):
                 visible[k] = visibility[k, j, i] / 255.0
-            hit = (b1, b2, t, plane, ray, spread)
-            sample(mesh, look, lights, around, f, hit, visible, work)
+            hit = (b1, b2, t, plane, ray, wide)
+            point = q
+            if pair:
+                point = -1 if q == 0 else -2
+            sample(mesh, look, lights, around, f, hit, point, visible, work)
             for c in range(3):
-                out[j // factor, i // factor, c] += weight * work[0, c]
+                out[y, x, c] += weight * work[0, c]
     return count

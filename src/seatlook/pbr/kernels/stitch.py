@@ -44,6 +44,12 @@ def seam_at(mesh, f, b1, b2):
 
 
 @leaf()
+def reach(thread):
+    """Distance [m] beyond which nothing of a seam shows: six widths of its widest groove."""
+    return thread.offset + 6.0 * _PRESS_WIDTH + thread.width
+
+
+@leaf()
 def away_from_seam(mesh, f):
     """Gradients of distance and length along, as world vectors in the plane of face f."""
     i, j, k = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]

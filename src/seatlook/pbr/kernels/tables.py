@@ -9,13 +9,12 @@ from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import (
     ROUGHNESS_LOW,
     D_Charlie,
-    E_mean,
-    E_parts,
     V_Neubelt,
     V_SmithGGXCorrelated,
+    layers_at,
     lookup,
     lookup_mean,
-    passed,
+    means_of,
 )
 
 
@@ -115,12 +114,12 @@ def coupling(tables, materials, out):
     for p in range(len(materials)):
         for i in range(out.shape[1]):
             roughness = ROUGHNESS_LOW + (1.0 - ROUGHNESS_LOW) * i / (out.shape[1] - 1)
+            means = means_of(tables, materials[p], roughness)
             total = 0.0
             for j in range(n):
                 s = (j + 0.5) / n
-                parts = E_parts(tables, roughness, s * s)
-                mean = E_mean(tables, roughness)
-                total += passed(tables, materials[p], parts, mean, s * s)[2] * s * s * 2.0 * s
+                base = layers_at(tables, materials[p], roughness, means, s * s).base
+                total += base * s * s * 2.0 * s
             out[p, i] = 2.0 * total / n
 
 

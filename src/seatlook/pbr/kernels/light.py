@@ -1,0 +1,130 @@
+"""Light that arrives at a point: from discs and spheres, from the sky, from other faces."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.surface import along, cross, dot, minus, row, unit
+
+# Angular radius [rad] below which a light is a point for shading.
+SMALL = 0.01
+
+
+class Lights(NamedTuple):
+    """``near`` (k,): 0 far, 1 near; ``vector`` (k, 3); ``intensity`` (k, 3) [lux] or [cd].
+
+    ``size`` (k,): angular diameter [rad] or radius [m]; ``disc`` (s, 2): points of the unit disc
+    that the samples of a pixel look at, one each.
+    """
+
+    near: npt.NDArray[np.int64]
+    vector: npt.NDArray[np.float64]
+    intensity: npt.NDArray[np.float64]
+    size: npt.NDArray[np.float64]
+    disc: npt.NDArray[np.float64]
+
+
+class Around(NamedTuple):
+    """What arrives from elsewhere, per vertex, as luminance equal from all open directions.
+
+    ``sky`` (n, 3) [cd/m2]: the share of the sky not covered; ``bounce`` (n, 3) [cd/m2]: what the
+    cover itself sends; ``open`` (n,): share of the sky not covered; ``panorama`` (r, h, w, 3)
+    [cd/m2]: sky as lobes of rising roughness see it, no levels where it is equal everywhere.
+    """
+
+    sky: npt.NDArray[np.float64]
+    bounce: npt.NDArray[np.float64]
+    open: npt.NDArray[np.float64]
+    panorama: npt.NDArray[np.float64]
+
+
+@leaf()
+def arriving(lights, k, p):
+    """Unit direction to light k and irradiance (3,) [lux] on a plane facing it."""
+    if lights.near[k] == 0:
+        return row(lights.vector, k), row(lights.intensity, k)
+    to = minus(row(lights.vector, k), p)
+    s = 1.0 / dot(to, to)
+    i = row(lights.intensity, k)
+    return unit(to), (i[0] * s, i[1] * s, i[2] * s)
+
+
+@leaf()
+def across(l):
+    """Two unit vectors across ``l``."""
+    a = (1.0, 0.0, 0.0) if abs(l[0]) < 0.6 else (0.0, 1.0, 0.0)
+    t = unit(cross(l, a))
+    return t, cross(l, t)
+
+
+@leaf()
+def angle_of(lights, k, p):
+    """Angular radius [rad] of light k seen from ``p``."""
+    if lights.near[k] == 0:
+        return 0.5 * lights.size[k]
+    to = minus(row(lights.vector, k), p)
+    return lights.size[k] / np.sqrt(dot(to, to))
+
+
+@leaf()
+def towards_part(lights, angle, l, q):
+    """Unit direction to point q of a light's disc around ``l``, and how wide its part is.
+
+    The second value is what the part adds to the squared width of a lobe: twice the variance of
+    the half-vectors, a sixteenth of the squared angle over the whole disc per axis.
+    """
+    wider = 0.125 * angle * angle
+    # Smaller than any lobe: the middle stands for all.
+    if angle < SMALL:
+        return l, wider
+    t, s = across(l)
+    d = along(along(l, angle * lights.disc[q, 0], t), angle * lights.disc[q, 1], s)
+    return unit(d), wider / len(lights.disc)
+
+
+@leaf()
+def above_horizon(cosine, angle):
+    """Mean cosine over a disc of angular radius ``angle``, of which a part may have set.
+
+    The disc is taken for a band of the same variance, a half-width of 0.87 radii.
+    """
+    w = 0.866 * angle
+    if cosine >= w:
+        return cosine
+    return (cosine + w) ** 2 / (4.0 * w) if cosine > -w else 0.0
+
+
+@leaf()
+def panorama_towards(panorama, roughness, d):
+    """Luminance (3,) of the sky that a lobe of this roughness sees around direction ``d``."""
+    last, h, w = panorama.shape[0] - 1, panorama.shape[1], panorama.shape[2]
+    x = min(max(roughness, 0.0), 1.0) * last
+    r = min(int(x), last - 1)
+    c = x - r
+    y = np.arccos(min(1.0, max(-1.0, d[2]))) / np.pi * h - 0.5
+    y = min(max(y, 0.0), h - 1.0)
+    j = min(int(y), h - 2)
+    b = y - j
+    x = np.arctan2(d[0], -d[1]) / (2.0 * np.pi) * w - 0.5
+    i = int(np.floor(x))
+    a = x - i
+    i, n = i % w, (i + 1) % w
+    w0, w1, w2, w3 = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
+    low, high = panorama[r], panorama[r + 1]
+    return (
+        _mix(low, high, c, i, n, j, w0, w1, w2, w3, 0),
+        _mix(low, high, c, i, n, j, w0, w1, w2, w3, 1),
+        _mix(low, high, c, i, n, j, w0, w1, w2, w3, 2),
+    )
+
+
+@leaf()
+def _mix(low, high, c, i, n, j, w0, w1, w2, w3, k):
+    below = w0 * low[j, i, k] + w1 * low[j, n, k] + w2 * low[j + 1, i, k] + w3 * low[j + 1, n, k]
+    above = w0 * high[j, i, k] + w1 * high[j, n, k]
+    above += w2 * high[j + 1, i, k] + w3 * high[j + 1, n, k]
+    return below + c * (above - below)
