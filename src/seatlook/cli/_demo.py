@@ -32,6 +32,7 @@ def demo(
     seed: Seed = 0,
     resume: Resume = False,
     score: Scored = True,
+    files_only: Annotated[bool, Parameter(negative=())] = False,
     json: Json = False,
 ) -> int:
     """Write the files of a seat cushion with a pattern that fits it, and evaluate them.
@@ -57,6 +58,8 @@ def demo(
         Material of the middle panel, if it is another one.
     element_size_mm
         Mean edge length of the mesh.
+    files_only
+        Write the files, and evaluate nothing.
     """
     wanted = _shares("--ease", ease), _shares("--starve", starve)
     write_demo(
@@ -70,6 +73,8 @@ def demo(
         seed=seed or 0,
     )
     note(f"scene: {out / 'scene.toml'}")
+    if files_only:
+        return 0
     return evaluate_scene(load(out / "scene.toml"), out, resume=resume, score=score, json=json)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -193,8 +193,9 @@ class Comparison:
 
 
 def compare(
-    scenes: Sequence[Scene | Path | str],
+    scenes: Sequence[Scene | Path | str] | Mapping[str, Scene | Path | str],
     *,
+    changes: Iterable[str] = (),
     results: Mapping[str, Path | str] = MappingProxyType({}),
     keep: Path | None = None,
     progress: Progress | None = None,
@@ -203,7 +204,8 @@ def compare(
 
     Parameters
     ----------
-    scenes : two or more; the others are compared with the first
+    scenes : two or more, by names of your own if given; the others are compared with the first
+    changes : values set over those of every scene's file, such as ``"mesh.seed=3"``
     results : name of a variant -> its result file, if it is solved already
     keep : folder for ``NAME/result.npz``; a result of the very scene that is there is taken
     progress : called with the step's name
@@ -216,8 +218,11 @@ def compare(
     """
     if len(scenes) < 2:
         raise InputError.single("scenes", got=len(scenes), expected="two or more")
-    read = [s if isinstance(s, Scene) else io.load_scene(s) for s in scenes]
-    named = dict(zip(variant_names(read), read, strict=True))
+    words = tuple(changes)
+    given = scenes.values() if isinstance(scenes, Mapping) else scenes
+    read = [s if isinstance(s, Scene) else io.load_scene(s, changes=words) for s in given]
+    names = tuple(scenes) if isinstance(scenes, Mapping) else variant_names(read)
+    named = dict(zip(names, read, strict=True))
     for name in results:
         if name not in named:
             raise InputError.single("results", got=name, expected=f"one of {', '.join(named)}")

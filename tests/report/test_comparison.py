@@ -1,0 +1,131 @@
+"""Variants side by side: same camera, exposure and range; names, tables and pages."""
+
+from __future__ import annotations
+
+import builtins
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from scene_files import write_two_panels
+from seatlook import compare, io
+from seatlook.cli import run
+from seatlook.errors import InputError
+from seatlook.report import comparison as module
+from seatlook.report.comparison import Comparison, variant_names
+from seatlook.report.comparison_page import write_comparison
+from seatlook.solver import solve
+
+pytestmark = pytest.mark.render
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_two_panels(tmp_path_factory.mktemp("compare")).parent
+
+
+@pytest.fixture(scope="module")
+def comparison(folder: Path) -> Comparison:
+    scene = io.load_scene(folder / "scene.toml")
+    other = io.load_scene(folder / "scene.toml", changes=['pattern.material="suede"'])
+    return compare({"pvc": scene, "suede cover": other}, keep=folder / "kept")
+
+
+def test_pictures_are_named_drawn_once_and_at_one_exposure(comparison):
+    one = comparison["pvc", "suede", "bulb"]
+    assert one is comparison["pvc", "suede", "bulb"]
+    assert one.png.startswith(b"\x89PNG")
+    assert comparison["suede cover", "suede", "bulb"].ev100 == one.ev100 == 5.0
+    assert (comparison.textures, comparison.rigs) == (("pvc", "suede"), ("sun", "bulb"))
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        (("pcv", "suede", "sun"), "variant: got 'pcv', expected one of pvc, suede cover"),
+        (("pvc", "sued", "sun"), "did you mean 'suede'?"),
+        (("pvc", "suede", "son"), "rig: got 'son', expected one of sun, bulb"),
+        (("pvc", "suede"), r"expected \[variant, texture, rig\]"),
+    ],
+)
+def test_a_wrong_name_is_answered_with_the_known_ones(comparison, names, message):
+    with pytest.raises(InputError, match=message):
+        comparison[names]
+
+
+def test_the_largest_difference_stands_first(comparison):
+    table = comparison.table("w2_mean")
+    assert table.heads == ("zone", "w2_mean: pvc", "w2_mean: suede cover", "suede cover - pvc")
+    away = [abs(row[3]) for row in table.rows]
+    assert away == sorted(away, reverse=True)
+    assert away[0] > 0
+    assert all(row[3] == row[2] - row[1] for row in table.rows)
+    with pytest.raises(InputError, match="did you mean 'w2_mean'"):
+        comparison.table("w2_men")
+
+
+def test_html_shows_every_picture_without_scripts(comparison):
+    html = comparison._repr_html_()
+    assert html.count("data:image/png;base64,") == 4
+    assert "EV 5" in html
+    assert "<script" not in html
+    both = comparison.show(("pvc", "suede", "sun"), ("suede cover", "suede", "sun"))
+    assert both._repr_html_().count("data:image/png;base64,") == 2
+    assert repr(both) == "Contrast(A: pvc, suede, sun; B: suede cover, suede, sun)"
+    assert repr(comparison).startswith("Comparison(2 x 2 x 2: pvc, suede cover;")
+
+
+def test_without_ipywidgets_sliders_say_what_to_install(comparison, monkeypatch):
+    real = builtins.__import__
+
+    def absent(name: str, *args: object, **options: object) -> object:
+        if name == "ipywidgets":
+            raise ImportError(name)
+        return real(name, *args, **options)
+
+    monkeypatch.setattr(builtins, "__import__", absent)
+    with pytest.raises(InputError, match=r'pip install "seatlook\[notebook\]"'):
+        comparison.sliders()
+
+
+def test_the_page_says_first_what_differs(comparison, tmp_path):
+    page = write_comparison(comparison, tmp_path).read_text()
+    assert page.index("Parameters that differ") < page.index('id="appearance"')
+    differences = page[page.index('id="differences"') : page.index('id="appearance"')]
+    assert "cover pvc: thickness_mm" in differences
+    assert "texture suede: " not in differences
+    assert len(list(tmp_path.glob("variants/*/*/*.png"))) == 8
+    assert len(list(tmp_path.glob("maps/*/*.png"))) == 8
+
+
+def test_a_kept_result_is_taken_and_a_stale_one_is_not(folder, comparison, monkeypatch):
+    solved = []
+    monkeypatch.setattr(module, "solve", lambda cover: solved.append(cover) or solve(cover))
+    scenes = {name: v.scene for name, v in comparison.variants.items()}
+    compare(scenes, keep=folder / "kept")
+    assert solved == []
+    scenes["pvc"] = replace(scenes["pvc"], digest="another")
+    compare(scenes, keep=folder / "kept")
+    assert len(solved) == 1
+
+
+def test_variants_are_told_apart(folder):
+    scene = io.load_scene(folder / "scene.toml")
+    named = replace(scene, name="b")
+    assert variant_names([scene, named]) == ("two panels", "b")
+    assert variant_names([scene, replace(scene, path=Path("x/other.toml"))]) == ("scene", "other")
+    folder_name = folder.name
+    assert variant_names([scene, scene]) == (f"1 {folder_name}", f"2 {folder_name}")
+
+
+def test_compare_on_the_command_line(folder, tmp_path, capsys):
+    scene = str(folder / "scene.toml")
+    words = ["compare", scene, scene, "--out", str(tmp_path / "out")]
+    assert run([*words, "--dry-run"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 1 + 2 * 2 * 2
+    assert not (tmp_path / "out").exists()
+    assert run(["compare", scene, "--out", str(tmp_path / "out")]) == 2
+    assert "expected two or more" in capsys.readouterr().err
+    assert run([*words, "--result", "none=a.npz"]) == 2
+    assert "--result: got 'none=a.npz', expected NAME=RESULT.npz" in capsys.readouterr().err
