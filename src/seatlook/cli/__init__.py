@@ -7,6 +7,7 @@ from seatlook.cli import (
     _machine,
     _making,
     _panel,
+    _precision,
     _run,
     _score,
     _solve,
@@ -25,6 +26,7 @@ app.command(_run.evaluate)
 app.command(_solve.solve)
 app.command(_making.timeline)
 app.command(_making.hooks)
+app.command(_precision.precision)
 app.command(_wrinkle.wrinkle)
 app.command(_compare.compare)
 app.command(_sweep.sweep)
