@@ -134,26 +134,26 @@ def hinges(X, T, bend):
 
 
 def patches(X, T, D):
-    """Stiffness of the quadratic through each triangle's six nodes, least-norm where some lack."""
+    """Stiffness of the quadratic through each triangle's six nodes, of least curvature at rims."""
     edges, area = edges_of(X, T), areas(X, T)
     rows, columns, values = [], [], []
     for t, corners in enumerate(T):
-        nodes = list(corners)
-        for e in edges.of_face[t]:
-            other = edges.faces[e].sum() - t
-            if edges.faces[e, 1] >= 0:
-                nodes += [k for k in T[other] if k not in nodes]
+        sides = [e for e in edges.of_face[t] if edges.faces[e, 1] >= 0]
+        far = [int(T[edges.faces[e].sum() - t].sum() - edges.ends[e].sum()) for e in sides]
+        nodes = [*corners, *far]
         h = np.sqrt(area[t])
         u, v = ((X[nodes] - X[corners].mean(axis=0)) / h).T
-        basis = np.stack([np.ones_like(u), u, v, 0.5 * u * u, 0.5 * v * v, 0.5 * u * v], axis=1)
-        fit = np.linalg.pinv(basis)[3:] / h**2
+        plane = np.stack([np.ones_like(u), u, v], axis=1)
+        curved = np.stack([0.5 * u * u, 0.5 * v * v, 0.5 * u * v], axis=1)
+        # What the far nodes see beyond the plane through the corners.
+        beyond = np.hstack([-plane[3:] @ np.linalg.inv(plane[:3]), np.eye(len(far))])
+        fit = np.linalg.pinv(beyond @ curved) @ beyond / h**2
         rows.append(np.repeat(3 * t + np.arange(3), len(nodes)))
         columns.append(np.tile(nodes, 3))
         values.append(fit.ravel())
     index = np.concatenate(rows), np.concatenate(columns)
     H = csr_array((np.concatenate(values), index), shape=(3 * len(T), len(X)))
-    weight = kron(diags_array(area), csr_array(D))
-    return csr_array(H.T @ weight @ H)
+    return csr_array(H.T @ kron(diags_array(area), csr_array(D)) @ H)
 
 
 def sheet_of(element, X, T, fabric, **options):

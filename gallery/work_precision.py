@@ -1,0 +1,197 @@
+"""Work-precision diagrams: error against CPU seconds, for elements, methods and counter-examples.
+
+Run it with: python gallery/work_precision.py
+
+Rows are kept in docs/charts/work_precision.csv as they are finished and not run again; delete a row
+to repeat it. The covers come from gallery/scaling.py. Everything runs on one thread, the compiled
+kernels' cache warm; times include the set-up of the element.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).parents[1]
+CHARTS = ROOT / "docs" / "charts"
+TABLE = CHARTS / "work_precision.csv"
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "solver" / "failures")]
+
+import matplotlib  # noqa: E402
+
+matplotlib.use("Agg")
+from matplotlib import pyplot as plt  # noqa: E402
+from test_meshes import threshold  # noqa: E402
+
+import fabrics  # noqa: E402
+import meshes  # noqa: E402
+from counter_examples import position_based, sheet_of  # noqa: E402
+from elastica import hanging_tip  # noqa: E402
+from seatlook.solver.loads import DeadLoad  # noqa: E402
+from seatlook.solver.newton import Potential  # noqa: E402
+from seatlook.solver.sheet import solve_sheet  # noqa: E402
+from seatlook.solver.statics import equilibrium  # noqa: E402
+
+COLUMNS = ("panel", "series", "parameter", "seed", "cpu_seconds", "error")
+Case = tuple[str, str, float, int, Callable[[], float]]
+SEEDS = (0, 1, 2)
+GAMMA, SLENDERNESS, WIDTH = 10.0, 0.02, 0.2
+TITLES = {
+    "threshold": "Threshold: buckling load of a sheet on springs\n(4 to 16 edges per wave, exact)",
+    "tension": "The same, pulled across the wave by 2 kN/m\n(6 to 16 edges per wave, exact)",
+    "equilibrium": "Equilibrium: tip of a hanging strip, Γ = 10, t/L = 0.02\n"
+    "(5 to 40 edges, elastica)",
+    "cover": "Cover of the demo seat, sewn, hooked and at rest\n(20 to 7 mm; mean W2 against 5 mm)",
+}
+
+
+def cases() -> Iterator[Case]:
+    """Yield panel, series, parameter, seed and what returns the error."""
+    for element, edges, seed in product(("edgeslope", "hinge", "patch6"), (4, 6, 8, 12, 16), SEEDS):
+        call = partial(threshold, element, "uns", edges, seed=seed)
+        yield "threshold", element, edges, seed, call
+        if edges >= 6:
+            yield "tension", element, edges, seed, partial(call, tension=2000.0)
+    for method in ("newton", "lbfgs", "explicit"):
+        for edges in (5, 10, 20, 40) if method != "explicit" else (5, 10, 20):
+            yield "equilibrium", method, edges, 0, partial(strip_error, method, edges)
+    for element in ("hinge", "patch6"):
+        for edges in (5, 10, 20):
+            call = partial(counter_strip_error, element, edges)
+            yield "equilibrium", f"{element}, newton", edges, 0, call
+    for sweeps in (100, 1000, 10_000):
+        yield "equilibrium", "XPBD, 10 edges", sweeps, 0, partial(position_error, sweeps)
+
+
+def strip(edges: int, kind: str) -> tuple[np.ndarray, np.ndarray, object]:
+    """Mesh and fabric of a strip with L = 1 and B = 1."""
+    X, T = meshes.rectangle(kind, 1.0, WIDTH, 1.0 / edges)
+    fabric = fabrics.isotropic(12.0 / SLENDERNESS**2, 1.0, density=1.0, thickness=SLENDERNESS)
+    return X, T, fabric
+
+
+def tip_error(X: np.ndarray, x: np.ndarray) -> float:
+    """Distance of the tip from the extensible elastica's, over the length."""
+    tip = x[X[:, 0] > X[:, 0].max() - 1e-9].mean(axis=0)
+    exact = hanging_tip(GAMMA, SLENDERNESS)
+    return float(np.hypot(tip[0] - exact[0], tip[2] - exact[1]))
+
+
+def strip_error(method: str, edges: int) -> float:
+    """The product's element by one of its methods."""
+    X, T, fabric = strip(edges, "uns")
+    solved = solve_sheet(
+        X, T, fabric, clamped=X[:, 0] < 1e-9, gravity=(0, 0, -GAMMA), method=method, tolerance=5e-4
+    )
+    return tip_error(X, solved.positions) if solved.converged else float("nan")
+
+
+def counter_strip_error(element: str, edges: int) -> float:
+    """Linear triangles on a regular mesh; its clamp is a column of vertices more."""
+    h = 1.0 / edges
+    X, T = meshes.rectangle("right", 1.0 + h, WIDTH, h)
+    X = X - [h, 0.0]
+    fabric = strip(edges, "right")[2]
+    sheet = sheet_of(element, X, T, fabric)
+    held = np.repeat((X[:, 0] < 1e-9)[:, None], 3, axis=1)
+    weight = DeadLoad(np.outer(sheet.mass, (0, 0, -GAMMA)))
+    x = np.pad(X, ((0, 0), (0, 1)))
+    potential = Potential(sheet.energies, [weight], ~held)
+    found = equilibrium(sheet, potential, x, "newton", tolerance=5e-4, max_iterations=None)
+    return tip_error(X, found.x) if found.residual <= 5e-4 else float("nan")
+
+
+def position_error(sweeps: int) -> float:
+    """Position-based dynamics with hinges, one long step from rest."""
+    X, T = meshes.rectangle("right", 1.1, WIDTH, 0.1)
+    X = X - [0.1, 0.0]
+    fabric, x = strip(10, "right")[2], np.pad(X, ((0, 0), (0, 1)))
+    moved = position_based(
+        X, T, fabric, x, X[:, 0] < 1e-9, (0, 0, -GAMMA), dt=1.0, iterations=sweeps
+    )
+    return tip_error(X, moved)
+
+
+def run_missing() -> None:
+    """Run what the table lacks; a first, unkept run of each series compiles its kernels."""
+    done = {tuple(row[c] for c in COLUMNS[:4]) for row in read(TABLE)}
+    warm: set[str] = set()
+    for panel, series, parameter, seed, error in cases():
+        if (panel, series, str(parameter), str(seed)) in done:
+            continue
+        if series not in warm:
+            warm.add(series)
+            error()
+        clock = time.process_time()
+        value = error()
+        row = (panel, series, parameter, seed, f"{time.process_time() - clock:.4f}", f"{value:.3g}")
+        print(*row, flush=True)
+        fresh = not TABLE.exists()
+        with TABLE.open("a", newline="", encoding="utf-8") as file:
+            out = csv.writer(file)
+            if fresh:
+                out.writerow(COLUMNS)
+            out.writerow(row)
+
+
+def read(path: Path) -> list[dict[str, str]]:
+    """Return the rows of a table, none if there is no file."""
+    if not path.exists():
+        return []
+    with path.open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def covers() -> list[dict[str, str]]:
+    """Rows of the demo cover by size and seed, their error against the finest."""
+    rows = [row for row in read(CHARTS / "scaling.csv") if row["status"] == "converged"]
+    if not rows:
+        return []
+    finest = min(rows, key=lambda row: float(row["element_size_mm"]))
+    return [
+        {"panel": "cover", "series": "L-BFGS", "parameter": row["element_size_mm"],
+         "seed": row["seed"], "cpu_seconds": row["cpu_seconds"],
+         "error": f"{float(row['w2_mean']) / float(finest['w2_mean']) - 1.0:.4g}"}
+        for row in rows if row["element_size_mm"] != finest["element_size_mm"]
+    ]  # fmt: skip
+
+
+def draw(path: Path) -> None:
+    """Draw the four diagrams; bars span the seeds."""
+    figure, axes = plt.subplots(2, 2, figsize=(11, 8.5), layout="constrained")
+    rows = [*read(TABLE), *covers()]
+    for axis, (panel, title) in zip(axes.flat, TITLES.items(), strict=True):
+        groups: dict[str, dict[str, list[tuple[float, float]]]] = defaultdict(
+            lambda: defaultdict(list)
+        )
+        for row in rows:
+            if row["panel"] == panel:
+                pair = float(row["cpu_seconds"]), abs(float(row["error"]))
+                groups[row["series"]][row["parameter"]].append(pair)
+        for series, points in groups.items():
+            values = [np.array(pairs) for pairs in points.values()]
+            t = [v[:, 0].mean() for v in values]
+            middle = np.array([v[:, 1].mean() for v in values])
+            spread = np.abs([[m - v[:, 1].min(), v[:, 1].max() - m]
+                             for m, v in zip(middle, values, strict=True)]).T  # fmt: skip
+            dashed = "--" if series.startswith(("hinge", "patch6", "XPBD")) else "-"
+            axis.errorbar(t, middle, yerr=spread, marker="o", ls=dashed, capsize=3, label=series)
+        axis.set(xscale="log", yscale="log", title=title, xlabel="CPU s, 1 thread",
+                 ylabel="relative error")  # fmt: skip
+        axis.grid(alpha=0.3, which="both")
+        axis.legend(fontsize=8)
+    figure.suptitle("Error against work; dashed: counter-examples that are no part of seatlook")
+    figure.savefig(path)
+
+
+if __name__ == "__main__":
+    run_missing()
+    draw(CHARTS / "work_precision.svg")
