@@ -5,6 +5,7 @@
 #   make browser    the gallery page in headless Chromium
 #   make check      style, types, import contract, spelling
 #   make bench      timings
+#   make docs       the reference, from the docstrings, in out/reference
 VENV ?= .venv
 OUT ?= out/demo
 BIN := $(VENV)/bin
@@ -14,7 +15,7 @@ TESTS := --doctest-modules tests src/seatlook
 # Numba sees a change in the file of a kernel, not in the files of the kernels it calls.
 export NUMBA_CACHE_DIR ?= $(CURDIR)/.numba_cache/$(shell cat src/seatlook/*/kernels/*.py | cksum | cut -d ' ' -f 1)
 
-.PHONY: demo test validate browser check format bench clean
+.PHONY: demo test validate browser check format bench docs clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.gl
@@ -38,6 +39,10 @@ check: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/codespell
+
+docs: $(VENV)/.dev
+	$(BIN)/python -m pip --disable-pip-version-check install --quiet --group docs
+	$(BIN)/pdoc --docformat numpy --output-directory out/reference seatlook '!seatlook.cli'
 
 format: $(VENV)/.dev
 	$(BIN)/ruff check --fix .
