@@ -70,11 +70,11 @@ def test_what_is_taken_out_follows_the_wavelength(length, left):
     assert gain == pytest.approx(left, abs=0.02)
 
 
-def block(top):
+def block(top, steps=60):
     """Foam under the sheet: a box with a finely meshed lid at z = top(x, y)."""
     from pbr_scenes import grid
 
-    points, faces = grid((-0.15, -0.15), (0.15, 0.15), (60, 60))
+    points, faces = grid((-0.15, -0.15), (0.15, 0.15), (steps, steps))
     lid = np.column_stack([points, top(*points.T)])
     floor = np.column_stack([points, np.full(len(points), -0.08)])
     n = len(points)

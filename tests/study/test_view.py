@@ -125,11 +125,41 @@ def test_the_score_is_nearly_linear_in_amplitude(view):
     assert (np.diff(ladder.vwi) > 0).all()
     assert np.corrcoef(ladder.heights, ladder.vwi)[0, 1] ** 2 > 0.98
     assert ladder.height == pytest.approx(peak_to_valley(view))
+    left = ladder.zones["left interior"]
+    assert left.height == pytest.approx(peak_to_valley(view, "left interior"))
+    np.testing.assert_allclose(left.heights / left.height, ladder.heights / ladder.height)
+    pixels = {
+        n: (view.region.zone == k).sum() for k, n in ((0, "left interior"), (2, "right interior"))
+    }
+    energy = sum(ladder.zones[n].vwi ** 3.5 * count for n, count in pixels.items())
+    np.testing.assert_allclose((energy / sum(pixels.values())) ** (1 / 3.5), ladder.vwi)
+
+
+@pytest.mark.parametrize("mode", ["normals", "design"])
+def test_the_other_references_see_the_same_wrinkles(wrinkled, view, mode):
+    """On a flat foam all three take the same wave out; normals leave shape and shadows alone."""
+    from scenes import block as box
+    from scenes import foam_material
+
+    vertices, faces = box([-0.15, -0.15, -0.1], [0.15, 0.15, -0.0005])
+    foam = Foam(vertices=vertices, faces=faces, material=foam_material())
+    on_foam_solution = replace(wrinkled, cover=replace(wrinkled.cover, foam=foam))
+    found = View(on_foam_solution, oblique((320, 240)), mode=mode, quality="draft")
+    same = solver_faces(found.test_studio, found.camera) == solver_faces(
+        found.reference_studio, found.camera
+    )
+    assert same[found.region.mask].mean() > 0.999
+    if mode == "normals":
+        np.testing.assert_array_equal(
+            found.reference_studio.surface.mesh.vertices, found.test_studio.surface.mesh.vertices
+        )
+    assert found.vwi(BLACK, RIG) == pytest.approx(view.vwi(BLACK, RIG), rel=0.15)
+    assert found.null_score(BLACK, RIG) < 0.1
 
 
 def test_the_equivalent_height_of_the_field_itself_is_its_height(view):
     ladder = amplitude_ladder(view, BLACK, heights=(0, 1e-4, 2e-4, 4e-4, 8e-4))
-    found = ladder.equivalent(view.vwi(BLACK, reference_rig()))
+    found = ladder.equivalent(view.vwi(BLACK, reference_rig(view.camera)))
     assert found == pytest.approx(ladder.height, rel=0.05)
 
 

@@ -18,7 +18,11 @@ if TYPE_CHECKING:
     from seatlook.sensory.panel import Catch, Panel
     from seatlook.study.stimuli import Shown
 
-panel = App(name="panel", help="Ask people: plan a panel, make its page, fit its votes.")
+_HELP = """Ask people: plan a panel, make its page, fit its votes.
+
+Example: seatlook panel plan --judges 20 --stimuli 9
+"""
+panel = App(name="panel", help=_HELP)
 
 _FEW, _MANY = 8, 12
 _KEY = "panel.json"
@@ -201,7 +205,7 @@ def _drawn(
                 show("draw", scene=name, what="catch pairs")
                 found = [
                     stimuli.catch_pair(seen, black, lights, seed=seed)
-                    for lights in stimuli.catch_rigs(scene)
+                    for lights in stimuli.catch_rigs(scene, seen.camera)
                 ]
                 catches = [pair for pair in found if pair is not None]
     if not catches:

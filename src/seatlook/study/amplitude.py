@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.model import Appearance, FloatArray, Rig, Solution, sun
+from seatlook.model import Appearance, Camera, FloatArray, Rig, Solution, sun
 from seatlook.pbr import Image, Studio
 from seatlook.sensory.vwi import score, zone_visibility
 from seatlook.study.view import View, luminance
@@ -18,11 +18,16 @@ from seatlook.study.view import View, luminance
 LADDER = (0.0, 2e-5, 5e-5, 1e-4, 2.5e-4, 5e-4, 1e-3)
 
 
-def reference_rig(azimuth_deg: float = -30.0) -> Rig:
-    """Sun at 70 deg that gives 20 klx on the seat, and 2 klx from all around the interior."""
+def reference_rig(camera: Camera) -> Rig:
+    """Sun at 70 deg that gives 20 klx on the seat, and 2 klx from all around the interior.
+
+    It stands opposite the camera, where a crown of black leather shows its highlight.
+    """
     elevation = 70.0
+    eye = camera.position - camera.target
+    azimuth = float(np.degrees(np.arctan2(eye[0], -eye[1]))) + 180.0
     facing = 20_000.0 / float(np.sin(np.radians(elevation)))
-    lamp = sun(illuminance_lux=facing, elevation_deg=elevation, azimuth_deg=azimuth_deg)
+    lamp = sun(illuminance_lux=facing, elevation_deg=elevation, azimuth_deg=azimuth)
     return Rig(name="reference", lights=(lamp,), ambient=2_000.0 / np.pi)
 
 
@@ -83,7 +88,7 @@ def amplitude_ladder(
     height = peak_to_valley(view)
     if not height > 0:
         raise InputError.single("wrinkles", got="no height", expected="a field to scale")
-    rig = rig or reference_rig()
+    rig = rig or reference_rig(view.camera)
     factors = rungs / height
     names = view.solution.cover.zone_names
     smooth = luminance(_draw(view.reference_studio, view, black, rig))

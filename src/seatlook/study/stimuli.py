@@ -86,9 +86,9 @@ def catch_pair(view: View, black: Appearance, rig: Rig, *, seed: int) -> tuple[S
     return None
 
 
-def catch_rigs(scene: Scene) -> tuple[Rig, ...]:
+def catch_rigs(scene: Scene, camera: Camera) -> tuple[Rig, ...]:
     """Lights of the catch pairs: the reference rig, and the scene's first."""
-    return (reference_rig(), scene.rigs[0])
+    return (reference_rig(camera), scene.rigs[0])
 
 
 def panel_view(solution: Solution, camera: Camera, *, width: int) -> View:
