@@ -13,6 +13,7 @@ from seatlook.errors import InputError
 from seatlook.report.chart import number
 
 if TYPE_CHECKING:
+    from seatlook.report.making import MakingSection
     from seatlook.report.wrinkles import WrinkleSection
 
 
@@ -176,6 +177,7 @@ class PageData:
     seams : one row per seam: its two lengths and the ease between them
     shape : one row per zone: how far it stands off the foam
     wrinkles : the worst wrinkles and the distortion of the texture
+    making : energy balance, hooks, and pictures of the stages
     spots : places of the worst wrinkles in the pictures
     toml : what parameters belong to -> the same as TOML, every digit kept
     score : how visible wrinkles are; None where nothing was scored
@@ -204,6 +206,7 @@ class PageData:
     seams: Table | None = None
     shape: Table | None = None
     wrinkles: WrinkleSection | None = None
+    making: MakingSection | None = None
     score: ScoreSection | None = None
     spots: tuple[Spot, ...] = ()
     toml: MappingProxyType[str, str] = field(default_factory=lambda: MappingProxyType({}))
@@ -234,7 +237,8 @@ class PageData:
     def images(self) -> tuple[str, ...]:
         """Every image the page shows."""
         alone = (view.alone for view in self.views if view.alone)
-        return (*self.pictures.values(), *(view.image for view in self.views), *alone)
+        made = self.making.pictures if self.making else ()
+        return (*self.pictures.values(), *(view.image for view in self.views), *alone, *made)
 
     @property
     def lights(self) -> tuple[Dot, ...]:

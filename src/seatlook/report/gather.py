@@ -18,6 +18,7 @@ from seatlook.model import Light, Rig, Scene, Solution
 from seatlook.pbr import ev100, lux_at_seat, offscreen_backend, render_map
 from seatlook.report.chart import number
 from seatlook.report.data import Check, MapView, PageData, RigHead, ScoreSection, Table
+from seatlook.report.making import making_section
 from seatlook.report.page import write_page
 from seatlook.report.parameters import parameter_tables, parameter_toml
 from seatlook.report.wrinkles import wrinkle_section
@@ -91,6 +92,7 @@ def page_data(evaluation: Evaluation) -> PageData:
         seams=seam_table(scene),
         shape=_shape(evaluation),
         wrinkles=wrinkles,
+        making=making_section(solution, evaluation.folder),
         checks=(*_conditions(solution), *_limits(evaluation)),
         warnings=tuple(_warnings(evaluation, waves)),
         history=MappingProxyType(

@@ -14,7 +14,7 @@ class EnergyBalance:
     Parameters
     ----------
     ties : work of seams, hooks and frame on the cover; weight : of gravity
-    stored : elastic energy of sheet and foam at the end
+    stored : elastic energy of sheet and foam at the end, less what the panels began with
     friction : taken up by the foam's friction
     damping : by how much the time steps lower the potential, which an implicit step gives away
     """
@@ -49,7 +49,9 @@ def energy_balance(solution: Solution) -> EnergyBalance | None:
     return EnergyBalance(
         ties=float(history["tie_work"].sum()),
         weight=float(history["weight_work"].sum()),
-        stored=solution.figures["elastic_energy"] + solution.figures["foam_energy"],
+        stored=solution.figures["elastic_energy"]
+        + solution.figures["foam_energy"]
+        - float(history["placed"].sum()),
         friction=float(history["friction_work"].sum()),
         damping=float(history["damping"].sum()),
     )

@@ -43,8 +43,9 @@ RESIDUAL = 1e-3  # "converged": largest out-of-balance force over mean elastic n
 class Record(NamedTuple):
     """One row of the history: time [s], energies [J], gap [m]; ``elastic`` is the sheet's own.
 
-    Work [J] in the step: of the ties and of the weight on the cover, and of the cover on what rubs;
-    ``damping`` is by how much the step lowers the potential of all, which nothing stores.
+    Work [J] in the step: of the ties and of the weight on the cover, of the cover on what rubs;
+    ``damping`` is by how much it lowers the potential of all, which nothing stores; ``placed``
+    what the panels' imperfection stored before the first step.
     """
 
     time: float
@@ -59,6 +60,7 @@ class Record(NamedTuple):
     weight_work: float = 0.0
     friction_work: float = 0.0
     damping: float = 0.0
+    placed: float = 0.0
 
 
 class Process:
@@ -111,7 +113,7 @@ class Process:
         self._minimiser = minimiser(method, self.state.shape)
         self._factor: Preconditioner | None = None
         self._integrator: Integrator | None = None
-        self._taut, self._evaluations = _TAUT, 0
+        self._taut, self._evaluations, self._fresh = _TAUT, 0, True
         self._work, self._start = np.zeros_like(self.state), np.zeros_like(self.x)
 
     def resume(self, start: Solution) -> None:
@@ -120,6 +122,7 @@ class Process:
             raise InputError.single(
                 "start", got="a solution on another mesh", expected="one of this cover's mesh"
             )
+        self._fresh = False
         np.copyto(self.x, start.positions)
         np.copyto(self.v, start.velocities)
         for tie in self.ties.ties:
@@ -214,6 +217,8 @@ class Process:
     def _descend(self, factor: Preconditioner | None, limit: float, iterations: int) -> Record:
         """Minimise the moving potential until no vertex is out of balance by ``limit`` [N]."""
         np.copyto(self._start, self.x)
+        placed = self._elastic.value(self.state, self._work) if self._fresh else 0.0
+        self._fresh = False
         before = self._outside()
         descent = self._minimiser.minimise(
             self._moving,
@@ -229,7 +234,7 @@ class Process:
         after = self._outside()
         ties, weight, friction, whole = np.subtract(before, after).tolist()
         record = self.record(descent.iterations)._replace(
-            tie_work=ties, weight_work=weight, friction_work=-friction, damping=whole
+            tie_work=ties, weight_work=weight, friction_work=-friction, damping=whole, placed=placed
         )
         self.ties.update(self.x)
         return record

@@ -1,0 +1,46 @@
+import dataclasses
+
+import pytest
+
+import scenes
+from report.pages import page_data
+from seatlook.assembly import assemble
+from seatlook.report.making import making_section
+from seatlook.report.page import page_html
+from seatlook.solver import solve
+
+
+@pytest.fixture(scope="module")
+def solution():
+    scene = scenes.two_panels(gap=0.004, element_size=0.02)
+    (hook,) = scene.hooks
+    hook = dataclasses.replace(hook, pitch=0.05, limit=1e-6)
+    return solve(assemble(dataclasses.replace(scene, hooks=(hook,))))
+
+
+def test_hooks_and_work_are_tabled(solution, tmp_path):
+    made = making_section(solution, tmp_path)
+    (row,) = made.hooks.rows
+    cells = dict(zip(made.hooks.heads, row, strict=True))
+    assert cells["rings"] == 3
+    assert cells["mean of a ring [N]"] == pytest.approx(cells["pull in all [N]"] / 3)
+    assert cells["hardest [N]"] >= cells["mean of a ring [N]"] > 0
+    assert len(made.over) == 1
+    share = {name: percent for name, _, percent in made.work.rows}
+    assert share["work of seams, hooks and frame"] + share["work of the weight"] == pytest.approx(
+        100
+    )
+    assert sum(share.values()) - share["left over"] == pytest.approx(share["left over"])
+    assert abs(share["left over"]) < 5
+    assert made.pictures == ()
+
+
+def test_page_shows_the_section_and_the_pictures_in_its_folder(solution, tmp_path):
+    data = page_data(tmp_path)
+    (tmp_path / "timeline.png").write_bytes(b"x")
+    made = making_section(solution, tmp_path)
+    assert made.pictures == ("timeline.png",)
+    text = page_html(dataclasses.replace(data, making=made))
+    assert 'src="timeline.png"' in text
+    assert made.over[0] in text
+    assert 'id="making"' not in page_html(data)
