@@ -12,6 +12,10 @@ BIN := $(VENV)/bin
 PYTEST := $(BIN)/python -m pytest -q
 TESTS := --doctest-modules tests src/seatlook
 
+# Packages load their names on first use, which the reference does not see: it goes by modules.
+MODULES := $(shell cd src && find seatlook -name '[a-z]*.py' -not -path '*/cli/*' \
+	-not -path '*/kernels/*' | sort | sed 's|/|.|g; s|\.py$$||')
+
 # Numba sees a change in the file of a kernel, not in the files of the kernels it calls.
 export NUMBA_CACHE_DIR ?= $(CURDIR)/.numba_cache/$(shell cat src/seatlook/*/kernels/*.py | cksum | cut -d ' ' -f 1)
 
@@ -42,7 +46,7 @@ check: $(VENV)/.dev
 
 docs: $(VENV)/.dev
 	$(BIN)/python -m pip --disable-pip-version-check install --quiet --group docs
-	$(BIN)/pdoc --docformat numpy --output-directory out/reference seatlook '!seatlook.cli'
+	$(BIN)/pdoc --docformat numpy --output-directory out/reference $(MODULES)
 
 format: $(VENV)/.dev
 	$(BIN)/ruff check --fix .
