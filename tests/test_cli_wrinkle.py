@@ -80,7 +80,7 @@ def test_options_reach_the_figures(capsys):
         ([STRIP, "--facing", "0", "0", "0"], "--facing: got 0 0 0, expected a direction"),
         ([STRIP, "--against", "x.npz"], "--against: got"),
         ([STRIP, "--length-unit", "m"], "nodes: got an extent of 100 m"),
-        ([STRIP, "--export", "c.step"], "expected one of .vtp, .csv, .glb, .k"),
+        ([STRIP, "--export", "c.step"], "expected one of .vtp, .csv, .glb, .k, .npz"),
         (["no.npz"], "no.npz"),
         (["no"], "no: file: got no such file, expected a d3plot or a keyword deck"),
         (
@@ -111,7 +111,7 @@ def test_options_of_shells_are_refused_for_a_result(tmp_path, capsys):
 def test_a_state_becomes_maps_a_picture_and_files(tmp_path):
     """The arch seen from below is a valley; every file that is promised is there and right."""
     words = (STRIP, "--mode", "tensor", "--state", 1, "--facing", 0, 0, -1, "--out", "out")
-    exports = [w for s in (".vtp", ".csv", ".glb", ".k") for w in ("--export", f"cover{s}")]
+    exports = [w for s in (".vtp", ".csv", ".glb", ".k", ".npz") for w in ("--export", f"cover{s}")]
     done = seatlook(*words, *exports, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     folder = tmp_path / "out/state-1"
@@ -126,7 +126,7 @@ def test_a_state_becomes_maps_a_picture_and_files(tmp_path):
     assert all(float(row["c_per_mm"]) == pytest.approx(-0.02, rel=0.01) for row in shells)
     again = json.loads(seatlook("cover.k", "--mode", "tensor", "--json", cwd=tmp_path).stdout)
     assert again["states"][0]["c"] == pytest.approx(-0.02, rel=0.02)
-    assert io.read_result(folder / "result.npz").cover.panel_names == ("part 1",)
+    assert io.read_result(tmp_path / "cover.npz").cover.panel_names == ("part 1",)
     assert all((tmp_path / f"cover{s}").stat().st_size > 10_000 for s in (".vtp", ".csv", ".glb"))
 
 

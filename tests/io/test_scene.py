@@ -321,7 +321,8 @@ def test_panel_without_material(refused):
          "of sight"),
         ("w2_p95 = 1.0", "w2_max = 1.0",
          "accept.BOLSTER_R interior.w2_max: got unknown key, expected one of w2_mean, w2_p95, "
-         "w2_area_share, w_stretch_mean, w_compression_mean (did you mean 'w2_mean'?)"),
+         "w2_area_share, w_stretch_mean, w_compression_mean, w2_net_mean, w2_net_p95, "
+         "w2_net_area_share, vwi, equivalent_height_mm (did you mean 'w2_mean'?)"),
         ("schema = 1", "schema = 2", "schema: got 2, expected 1 to 1"),
     ],
 )  # fmt: skip

@@ -128,3 +128,13 @@ def test_bad_input_is_named(change, message):
     }
     with pytest.raises(InputError, match=message):
         wrinkle.wrinkle_indices(**(good | change))
+
+
+@pytest.mark.parametrize("mode", ["paper", "tensor"])
+def test_a_million_random_states_add_up(mode):
+    """W_stretch + W_compression = W2 within 2 ulp, 0 <= R <= 1, nothing nan or infinite."""
+    a = np.random.default_rng(0).uniform(-0.5, 0.5, (3, 1_000_000, 2, 2))
+    w = wrinkle.wrinkle_indices(*(0.5 * (a + np.swapaxes(a, 2, 3))), T, 20.0, curvature=mode)
+    assert (np.abs(w.w_stretch + w.w_compression - w.w2) <= 2 * np.spacing(w.w2)).all()
+    assert ((w.r_stretch >= 0) & (w.r_stretch <= 1)).all()
+    assert all(np.isfinite(getattr(w, name)).all() for name in w.__slots__)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -15,10 +15,10 @@ from seatlook.cli._run import load, print_zones
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.model import FloatArray, Scene, ShellResult, ShellState, Solution, WrinkleMap
+    from seatlook.model import FloatArray, Scene, ShellResult, Solution, WrinkleMap
     from seatlook.model.scene import CurvatureMode
+    from seatlook.study.shells import JudgedStates
     from seatlook.wrinkle.equations import StrainMeasure
-    from seatlook.wrinkle.shells import ShellWrinkles
 
 Files = Annotated[tuple[Path, ...], Parameter(negative=())]
 Names = Annotated[tuple[str, ...], Parameter(negative=())]
@@ -106,8 +106,9 @@ def wrinkle(
     out
         Folder to write to.
     export
-        File with strains and indices per element for other programs: .vtp, .csv, .glb, or .k, a
-        dynain deck. May be given more than once.
+        File with strains and indices per element for other programs: .vtp, .csv, .glb, .k, a
+        dynain deck, or .npz, a result for "seatlook render" and "score". May be given more than
+        once.
     """
     read = None if scene is None else load(scene)
     chosen: CurvatureMode = mode or (read.curvature if read else "paper")
@@ -133,6 +134,14 @@ class _Question:
     out: Path | None
     export: tuple[Path, ...]
     json: bool
+
+    def asked(self) -> dict[str, str]:
+        """Return what a page says was asked, under the names of the options."""
+        return {
+            "mode": self.mode,
+            "c_threshold_per_mm": "" if self.threshold is None else f"{self.threshold * _MM:g}",
+            "strain": self.strain or "as in the file",
+        }
 
 
 def _threshold(per_mm: float | None, radius_mm: float | None, mode: CurvatureMode) -> float | None:
@@ -225,7 +234,8 @@ def _judge_shells(file: Path, options: ShellOptions, question: _Question) -> Non
         reference=options.reference,
     )
     threshold = question.threshold or DEFAULT_THRESHOLD[question.mode]
-    figures, states, top = judged_states(
+    question = replace(question, threshold=threshold)
+    judged = judged_states(
         file,
         result,
         kept=options.state or (len(result) - 1,),
@@ -235,7 +245,8 @@ def _judge_shells(file: Path, options: ShellOptions, question: _Question) -> Non
         strain_measure=question.strain,
     )
     say(*(f"{file}: {note}" for note in result.notes))
-    _draw_shells(result, states, top, options, question)
+    if question.out is not None or question.export:
+        _draw_shells(file, result, judged, options.material or "black-leather", question)
     if question.json:
         data = {
             "file": str(file),
@@ -243,10 +254,15 @@ def _judge_shells(file: Path, options: ShellOptions, question: _Question) -> Non
             "c_threshold_per_mm": threshold * _MM,
             "shells": len(result.shells),
             "notes": list(result.notes),
-            "states": figures,
+            "states": judged.figures,
         }
         show_json(data)
-        return
+    else:
+        _print_states(judged.figures)
+
+
+def _print_states(figures: Sequence[Mapping[str, Any]]) -> None:
+    """Print one row per state, and one per part where there are several."""
     heads = ("time", "c", "c_min", "c_max", *_SHOWN, "h_mm", "source")
     table(
         ("state", *heads),
@@ -264,28 +280,31 @@ def _judge_shells(file: Path, options: ShellOptions, question: _Question) -> Non
 
 
 def _draw_shells(
-    result: ShellResult,
-    states: dict[int, tuple[ShellState, ShellWrinkles]],
-    top: float,
-    options: ShellOptions,
-    question: _Question,
+    file: Path, result: ShellResult, judged: JudgedStates, material: str, question: _Question
 ) -> None:
     """Draw the states, each into a folder of its own; export the last of them."""
-    if question.out is None and not question.export:
-        return
     from seatlook import io
+    from seatlook.report.shells import write_shell_page
     from seatlook.study.shell_cover import shell_cover
     from seatlook.study.shell_maps import draw_state, on_faces
 
-    material = io.read_material(options.material or "black-leather")
-    for number, (state, wrinkles) in states.items():
-        made = shell_cover(result.shells, state, wrinkles, material)
+    look = io.read_material(material)
+    for number, (state, wrinkles) in judged.states.items():
+        made = shell_cover(result.shells, state, wrinkles, look)
         if question.out is not None:
+            folder = question.out / f"state-{number}"
             with progress() as show:
-                draw_state(
-                    result.shells, wrinkles, made, question.out / f"state-{number}", top=top,
-                    say=show,
+                drawn = draw_state(
+                    result.shells, wrinkles, made, folder, top=judged.top, say=show
                 )  # fmt: skip
+            page = write_shell_page(
+                drawn,
+                judged.figures[number],
+                title=f"{file.name}, state {number}",
+                asked=question.asked(),
+                notes=result.notes,
+            )
+            say(f"gallery: {page}")
     if made.projected:
         say(
             f"no flat undeformed state: {', '.join(made.projected)}; textures are laid on along "

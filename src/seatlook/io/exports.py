@@ -10,6 +10,7 @@ from seatlook.io._schema import shown
 from seatlook.io.dynain import write_dynain
 from seatlook.io.face_csv import write_csv
 from seatlook.io.glb import write_glb
+from seatlook.io.result import write_result
 from seatlook.io.vtp import write_vtp
 from seatlook.model import Solution, WrinkleMap
 
@@ -20,6 +21,8 @@ WRITERS: dict[str, Callable[[Solution, WrinkleMap, Path], None]] = {
     ".glb": write_glb,
     # A dynain file has no place for indices; its reader computes them from the strains.
     ".k": lambda solution, indices, path: write_dynain(solution, path),
+    # Of shells from elsewhere, to be drawn and scored as a cover.
+    ".npz": lambda solution, indices, path: write_result(solution, path),
 }
 
 

@@ -19,7 +19,10 @@ from seatlook.model.pattern import Pattern
 CurvatureMode = Literal["paper", "tensor"]
 
 # What [accept] can limit: fields of a zone's row in the table of wrinkle indices.
-MEASURES = ("w2_mean", "w2_p95", "w2_area_share", "w_stretch_mean", "w_compression_mean")
+MEASURES = (
+    "w2_mean", "w2_p95", "w2_area_share", "w_stretch_mean", "w_compression_mean",
+    "w2_net_mean", "w2_net_p95", "w2_net_area_share",
+)  # fmt: skip
 # And what the score of a zone gives, worst over all textures and rigs.
 SCORE_MEASURES = ("vwi", "equivalent_height_mm")
 

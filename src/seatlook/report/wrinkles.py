@@ -21,12 +21,13 @@ from seatlook.study.findings import (
 from seatlook.wrinkle import map_top, w2_net
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     import numpy as np
 
     from seatlook.evaluation import Evaluation
     from seatlook.model import Camera
+    from seatlook.pbr import Picture
     from seatlook.wrinkle import Section
 
 _LABELS = {
@@ -83,6 +84,14 @@ def wrinkle_section(evaluation: Evaluation) -> WrinkleSection:
     """
     solution, out = evaluation.solution, evaluation.folder
     found = find(solution, evaluation.indices)
+    maps, files = tuple(_maps(evaluation, found)), write_findings(found, out)
+    return section_of(found, evaluation.camera, maps, files)
+
+
+def section_of(
+    found: Findings, camera: Camera, maps: tuple[MapView, ...], files: tuple[str, ...]
+) -> WrinkleSection:
+    """Put findings in tables and charts; ``maps`` and ``files`` lie beside the page already."""
     return WrinkleSection(
         worst=_worst(found),
         profiles=tuple(
@@ -90,9 +99,9 @@ def wrinkle_section(evaluation: Evaluation) -> WrinkleSection:
             for k, (w, cut) in enumerate(zip(found.worst, found.sections, strict=True), 1)
         ),
         distortion=_distortion(found),
-        maps=tuple(_maps(evaluation, found)),
-        files=write_findings(found, out),
-        spots=tuple(_spots(evaluation.camera, found)),
+        maps=maps,
+        files=files,
+        spots=tuple(_spots(camera, found)),
     )
 
 
@@ -179,7 +188,12 @@ def _maps(evaluation: Evaluation, found: Findings) -> Iterator[MapView]:
     path, picture = draw_net(net, solution, camera, out, top=top)
     low, high = picture.value_range
     yield MapView(name="W2 net", image=path, low=low, high=high, meaning=NET)
-    for name, (path, picture) in draw_findings(found, solution, camera, out).items():
+    yield from distortion_views(draw_findings(found, solution, camera, out))
+
+
+def distortion_views(pictures: Mapping[str, tuple[str, Picture]]) -> Iterator[MapView]:
+    """Name the pictures of ``draw_findings``."""
+    for name, (path, picture) in pictures.items():
         low, high = picture.value_range
         if name == "checker":
             size = number(1e3 * CHECKER)

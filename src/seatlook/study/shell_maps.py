@@ -2,16 +2,45 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from seatlook import io, pbr
 from seatlook.evaluation import Progress, draw_maps
-from seatlook.model import Shells, WrinkleMap
+from seatlook.model import Camera, Rig, Shells, WrinkleMap
 from seatlook.study.findings import Findings, draw_findings, find, write_findings
 from seatlook.study.framing import fitted_view, side_light
 from seatlook.study.shell_cover import ShellCover
 from seatlook.wrinkle.shells import ShellWrinkles
+
+if TYPE_CHECKING:
+    from seatlook.pbr import Picture
+
+PICTURE = "picture.png"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrawnState:
+    """What was drawn of one state, for its page; paths are relative to ``folder``.
+
+    Parameters
+    ----------
+    maps, distortion : name -> path and picture; no distortion without a flat undeformed state
+    files : tables
+    """
+
+    folder: Path
+    cover: ShellCover
+    findings: Findings
+    camera: Camera
+    rig: Rig
+    maps: MappingProxyType[str, tuple[str, Picture]]
+    distortion: MappingProxyType[str, tuple[str, Picture]] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
+    files: tuple[str, ...]
 
 
 def draw_state(
@@ -23,12 +52,11 @@ def draw_state(
     top: float,
     say: Progress,
     size: tuple[int, int] = (1280, 720),
-) -> Findings:
+) -> DrawnState:
     """Draw maps and a picture of one state into a folder, with its worst wrinkles and tables.
 
-    Leaves ``maps/``, ``picture.png``, ``worst.csv``, ``sections.csv``, ``elements.csv`` (shell
-    numbers and indices) and ``result.npz``, which "seatlook render" and "score" take. Distortion
-    is left out where a part has no flat undeformed state.
+    Leaves ``maps/``, ``picture.png``, ``worst.csv``, ``sections.csv``, and ``elements.csv`` with
+    shell numbers and indices. Distortion is left out where a part has no flat undeformed state.
 
     Parameters
     ----------
@@ -43,17 +71,20 @@ def draw_state(
     solution = cover.solution
     indices = on_faces(wrinkles.indices, cover)
     camera = fitted_view(solution, size=size)
-    io.write_result(solution, out / "result.npz")
     write_elements(shells, wrinkles, out / "elements.csv")
-    draw_maps(solution, indices, camera, out, say, top=top)
+    maps = draw_maps(solution, indices, camera, out, say, top=top)
     found = find(solution, indices)
-    write_findings(found, out, distortion=not cover.projected)
+    files = write_findings(found, out, distortion=not cover.projected)
+    shown: MappingProxyType[str, tuple[str, Picture]] = MappingProxyType({})
     if not cover.projected:
-        draw_findings(found, solution, camera, out, say)
+        shown = draw_findings(found, solution, camera, out, say)
     say("render")
-    picture = pbr.render(solution, None, rig=side_light(solution), camera=camera)
-    picture.save(out / "picture.png")
-    return found
+    rig = side_light(solution)
+    pbr.render(solution, None, rig=rig, camera=camera).save(out / PICTURE)
+    return DrawnState(
+        folder=out, cover=cover, findings=found, camera=camera, rig=rig, maps=maps,
+        distortion=shown, files=("elements.csv", *files),
+    )  # fmt: skip
 
 
 def on_faces(indices: WrinkleMap, cover: ShellCover) -> WrinkleMap:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -103,6 +103,21 @@ def evaluated_states(
             raise InputError(_placed(p, path, index) for p in error.problems) from error
 
 
+class JudgedStates(NamedTuple):
+    """What all states of a file give.
+
+    Parameters
+    ----------
+    figures : per state, as in ``wrinkle_states``
+    states : number -> state and its indices, of those to be drawn
+    top : upper end of the range of W2 for maps of any state
+    """
+
+    figures: list[dict[str, Any]]
+    states: dict[int, tuple[ShellState, ShellWrinkles]]
+    top: float
+
+
 def judged_states(
     path: Path,
     result: ShellResult,
@@ -112,14 +127,8 @@ def judged_states(
     c_threshold: float,
     facing: FloatArray | None = None,
     strain_measure: StrainMeasure | None = None,
-) -> tuple[list[dict[str, Any]], dict[int, tuple[ShellState, ShellWrinkles]], float]:
+) -> JudgedStates:
     """Evaluate all states, keep those to be drawn.
-
-    Returns
-    -------
-    figures : per state, as in ``wrinkle_states``
-    states : number -> state and its indices, of ``kept``
-    top : upper end of the range of W2 for maps of any state
 
     Raises
     ------
@@ -141,7 +150,7 @@ def judged_states(
         top = max(top, map_top(wrinkles.indices))
         if number in kept:
             states[number] = state, wrinkles
-    return figures, states, top
+    return JudgedStates(figures, states, top)
 
 
 def _placed(problem: Problem, path: Path, index: int) -> Problem:

@@ -1,0 +1,101 @@
+"""The gallery page of one state of a finite-element result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from seatlook import __version__
+from seatlook.evaluation import MAPS, label
+from seatlook.report.data import MapView, PageData, Table
+from seatlook.report.gather import rig_head
+from seatlook.report.page import write_page
+from seatlook.report.wrinkles import distortion_views, section_of
+from seatlook.study.shell_maps import PICTURE, DrawnState
+
+# key of a part's figures -> head of its column
+_COLUMNS: MappingProxyType[str, str] = MappingProxyType(
+    {
+        "c": "C mean [1/mm]",
+        "w1": "W1 mean",
+        "w2": "W2 mean",
+        "w2_p95": "W2 95 %",
+        "w2_area_share": "W2 above 1 [share of area]",
+        "w_stretch": "W_stretch mean",
+        "w_compression": "W_compression mean",
+        "area_mm2": "area [mm2]",
+        "h_mm": "h [mm]",
+    }
+)
+
+
+def write_shell_page(
+    drawn: DrawnState,
+    figures: dict[str, Any],
+    *,
+    title: str,
+    asked: dict[str, str],
+    notes: Sequence[str] = (),
+) -> Path:
+    """Write ``index.html`` beside the pictures of a state and return its path.
+
+    Parameters
+    ----------
+    figures : of the state, from ``seatlook.study.shells.state_figures``
+    asked : what was asked for -> its value, such as curvature mode and threshold
+    notes : what the reader of the file said
+    """
+    look = drawn.cover.solution.cover.materials[0].name
+    rig = rig_head(drawn.rig)
+    heads = ("key", "value", "source")
+    parameters = Table(heads=heads, rows=tuple((k, v, None) for k, v in asked.items()))
+    data = PageData(
+        title=title,
+        camera=drawn.camera.name,
+        size=drawn.camera.size,
+        pixels_per_degree=drawn.camera.pixels_per_degree,
+        textures=(look,),
+        rigs=(rig,),
+        pictures=MappingProxyType({(look, rig.name): PICTURE}),
+        maps=tuple(_map_views(drawn)),
+        zones=Table(
+            heads=("part", *_COLUMNS.values()),
+            rows=tuple(
+                (f"{p['part']} {p['name']}".strip(), *(p[key] for key in _COLUMNS))
+                for p in figures["parts"]
+            ),
+        ),
+        wrinkles=section_of(
+            drawn.findings, drawn.camera, tuple(distortion_views(drawn.distortion)), drawn.files
+        ),
+        parameters=MappingProxyType({"evaluation": parameters}),
+        provenance=MappingProxyType(
+            {
+                "seatlook": __version__,
+                "time": f"{figures['time']:g}",
+                "curvature from": figures["source"],
+                "shells turned over": str(figures["shells_turned"]),
+                "shells deleted": str(figures["shells_deleted"]),
+            }
+        ),
+        status="the shape is that of another calculation",
+        warnings=(*notes, *_projected(drawn)),
+        files=drawn.files,
+    )
+    return write_page(data, drawn.folder)
+
+
+def _map_views(drawn: DrawnState) -> Iterator[MapView]:
+    for name, (path, picture) in drawn.maps.items():
+        low, high = picture.value_range
+        yield MapView(name=label(name), image=path, low=low, high=high, meaning=MAPS[name])
+
+
+def _projected(drawn: DrawnState) -> Iterator[str]:
+    if drawn.cover.projected:
+        yield (
+            f"No flat undeformed state: {', '.join(drawn.cover.projected)}. Textures are laid on "
+            "along the world's axes, and the distortion of the texture is not told."
+        )
