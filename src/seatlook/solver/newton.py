@@ -201,7 +201,7 @@ def factorise(hessian: csc_array) -> tuple[SuperLU, int]:
         options={"SymmetricMode": True},
     )
     pivots = factor.U.diagonal()
-    return factor, int((pivots < -_ROUNDING * np.abs(pivots).max()).sum())
+    return factor, int((pivots < -_ROUNDING * np.abs(pivots).max(initial=0.0)).sum())
 
 
 def _definite(potential: Potential, x: FloatArray, hessian: csc_array, factor: SuperLU) -> SuperLU:
