@@ -5,12 +5,15 @@ from __future__ import annotations
 import importlib
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
+import numpy as np
 import pytest
 
-from report.pages import page_data
+from report.pages import RIGS, page_data, write_png
 from seatlook.report import write_page
 
 pytestmark = pytest.mark.browser
@@ -259,6 +262,32 @@ def test_one_file_alone_shows_everything(browser, tmp_path):
     page.get_by_role("button", name="Show suede <insert> under sun as A").click()
     assert pictures(page)[0] == "A: suede <insert>, sun"
     assert said == []
+    context.close()
+
+
+def test_a_page_of_thirty_cells_is_light_and_opens_at_once(browser, tmp_path):
+    textures = tuple(f"texture {k}" for k in range(5))
+    rigs = tuple(replace(RIGS[0], name=f"rig {k}") for k in range(6))
+    noise = np.random.default_rng(0)
+    pictures = {}
+    for number, cell in enumerate((t, r.name) for t in textures for r in rigs):
+        # A textured picture packs to about two thirds of a megabyte; this one to more.
+        image = np.repeat(noise.integers(100, 116, (720, 1280, 1), dtype=np.uint8), 3, axis=2)
+        pictures[cell] = f"images/{number}.png"
+        write_png(tmp_path / pictures[cell], image)
+    data = page_data(
+        tmp_path, textures=textures, rigs=rigs, pictures=MappingProxyType(pictures),
+        size=(1280, 720), score=None,
+    )  # fmt: skip
+    page_file = write_page(data, tmp_path)
+    weight = sum(f.stat().st_size for f in tmp_path.rglob("*") if f.is_file())
+    context = browser.new_context(offline=True, viewport={"width": 1280, "height": 900})
+    page = context.new_page()
+    page.goto(page_file.as_uri())
+    opened = page.evaluate("performance.getEntriesByType('navigation')[0].loadEventEnd")
+    assert page.locator(".grid img").count() == 30
+    print(f"30 cells: {weight / 1e6:.1f} MB, open after {opened:.0f} ms")
+    assert weight < 40e6
     context.close()
 
 
