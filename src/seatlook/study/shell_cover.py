@@ -84,9 +84,23 @@ def shell_cover(
         zone_names=names,
         element_size=float(edge_lengths(state.positions[node], corners).mean()),
     )
+    strains = _strains(shells, reference, wrinkles, element, warp[panel])
+    return ShellCover(
+        solution=_solution(cover, state, node, strains),
+        element=element,
+        projected=tuple(name for name, is_flat in zip(names, flat, strict=True) if not is_flat),
+    )
+
+
+def _solution(
+    cover: Cover,
+    state: ShellState,
+    node: IntArray,
+    strains: tuple[FloatArray, FloatArray, FloatArray],
+) -> Solution:
     x = state.positions[node]
-    top, mid, bottom = _strains(shells, reference, wrinkles, element, warp[panel])
-    solution = Solution(
+    top, mid, bottom = strains
+    return Solution(
         cover=cover,
         positions=x,
         velocities=np.zeros_like(x),
@@ -98,8 +112,6 @@ def shell_cover(
         status="converged",
         reason="read from a finite-element result; equilibrium is that calculation's word",
     )
-    projected = tuple(name for name, is_flat in zip(names, flat, strict=True) if not is_flat)
-    return ShellCover(solution=solution, element=element, projected=projected)
 
 
 def _materials(
