@@ -11,8 +11,6 @@ __version__ = "0.1.0"
 _PUBLIC: dict[str, str] = {
     "Camera": "seatlook.model",
     "Cover": "seatlook.model",
-    "Comparison": "seatlook.report.comparison",
-    "Evaluation": "seatlook.evaluation",
     "InputError": "seatlook.errors",
     "Rig": "seatlook.model",
     "Scene": "seatlook.model",
