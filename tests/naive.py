@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from seatlook.solver.edgeslope import Rows
+
 
 def edge_strains(x, ends, length, rows, offset):
     """Green strain of every edge along its arc; ``rows`` (e, n) gives the second derivative."""
@@ -81,3 +83,12 @@ def bending_matrix(rows, edges, area, stiffness, share):
         jump = rows[first] - rows[second]
         K += weight * jump.T @ (0.5 * (stiffness[first] + stiffness[second])) @ jump
     return K
+
+
+def morley_matrix(X, edges, area, stiffness):
+    """Dense (n, n) bending matrix of Morley's plate element, the turns of its edges condensed."""
+    n, e = len(X), len(edges.ends)
+    turns = Rows(np.arange(e + 1), n + np.arange(e), np.ones(e))
+    rows = curvature_rows(np.concatenate([X, np.zeros((e, 2))]), edges, turns, area)
+    K = np.einsum("t,tin,tij,tjm->nm", area, rows, stiffness, rows, optimize=True)
+    return K[:n, :n] - K[:n, n:] @ np.linalg.solve(K[n:, n:], K[n:, :n])

@@ -11,7 +11,7 @@ from seatlook.mesh import vertex_normals
 from seatlook.model import FloatArray
 from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.energy import Energy
-from seatlook.solver.factor import SplitFactor
+from seatlook.solver.factor import Factor, Preconditioner, SplitFactor
 from seatlook.solver.kernels.lbfgs import largest_row
 from seatlook.solver.lbfgs import Potential as Sum
 from seatlook.solver.method import Method, minimiser
@@ -46,15 +46,16 @@ def equilibrium(
     name = method if isinstance(method, str) else "explicit"
     most = MOST[name] if max_iterations is None else max_iterations
     if method == "newton":
-        return _by_newton(sheet, potential, x, tolerance, most)
-    found = _descend(sheet, potential, x, method, tolerance=tolerance, most=most)
+        found = _by_newton(sheet, potential, x, tolerance, most)
+    else:
+        found = _descend(sheet, potential, x, method, tolerance=tolerance, most=most)
     for kicks in range(_MOST_KICKS + 1):
         if found.residual > tolerance:
             return found
         hessian = potential.hessian(found.x, definite=False)
         factor, downhill = factorise(hessian)
         found = replace(found, downhill=downhill, kicks=kicks)
-        left = most - found.iterations
+        left = MOST["lbfgs"] if method == "newton" else most - found.iterations
         if downhill == 0 or kicks == _MOST_KICKS or left <= 0:
             return found
         x = push(potential, found.x, hessian, factor, _KICK * sheet.thickness.max())
@@ -84,7 +85,7 @@ class _Free(Sum):
 class _FreeFactor:
     """A preconditioner that leaves held positions where they are."""
 
-    def __init__(self, factor: SplitFactor, free: BoolArray) -> None:
+    def __init__(self, factor: Preconditioner, free: BoolArray) -> None:
         self._factor, self._free = factor, free
 
     def solve(self, right: FloatArray, out: FloatArray) -> None:
@@ -101,15 +102,20 @@ def _descend(
     tolerance: float,
     most: int,
 ) -> Equilibrium:
-    """Minimise in rounds, each with a fresh matrix or fresh masses."""
+    """Minimise in rounds, each with a fresh matrix or fresh masses.
+
+    Away from an unstable equilibrium the exact Hessian stays indefinite for long. There Newton's
+    method gives way to L-BFGS, with the projected Hessian as its matrix.
+    """
     x = np.array(x, dtype=np.float64, order="C")
     own = np.asarray(np.repeat(sheet.mass[:, None], 3, axis=1), dtype=np.float64)
-    reduced, lower = _Free(potential), minimiser(method, x.shape, own)
+    lower = minimiser("lbfgs" if method == "newton" else method, x.shape, own)
+    reduced = _Free(potential)
     energy, gradient = potential.value(x)
     residual, spent, history = potential.residual(x, gradient), 0, [energy]
     while residual > tolerance and spent < most:
         limit = 0.9 * tolerance * potential.force_scale(x)
-        factor = _split(sheet, potential, x) if method == "lbfgs" else None
+        factor = _matrix(sheet, potential, x, method)
         went = lower.minimise(
             reduced,
             x,
@@ -124,6 +130,21 @@ def _descend(
         if went.stalled and went.iterations == 0:
             break
     return Equilibrium(x, residual, np.array(history), spent, -1, 0)
+
+
+def _matrix(
+    sheet: ElasticSheet, potential: Potential, x: FloatArray, method: Method
+) -> _FreeFactor | None:
+    """What stands for the Hessian in L-BFGS."""
+    if method == "lbfgs":
+        return _split(sheet, potential, x)
+    if method != "newton":
+        return None
+    terms = (*potential.elastic, *potential.others)
+    parts = [term.hessian(x, definite=True) for term in terms]
+    full = csc_array(sum(parts[1:], parts[0]))
+    held = np.where(potential.free.ravel(), 1e-7 * float(full.diagonal().mean()), _HELD)
+    return _FreeFactor(Factor(csc_array(full + diags_array(held))), potential.free)
 
 
 def _split(sheet: ElasticSheet, potential: Potential, x: FloatArray) -> _FreeFactor:
@@ -172,13 +193,13 @@ def _by_newton(
     A thin sheet swings along arcs that Newton's straight steps stretch, so the line search allows
     only short ones. A softer membrane lets it swing; its shape is close to the right one.
     """
-    kick = _KICK * sheet.thickness.max()
     few = min(_PATIENCE, most)
-    direct = newton(potential, x, max_iterations=few, tolerance=tolerance, kick=kick)
-    if direct.residual <= tolerance and direct.stable:
+    direct = newton(potential, x, max_iterations=few, tolerance=tolerance)
+    if direct.residual <= tolerance:
         return direct
+    kick = _KICK * sheet.thickness.max()
     for factor in _SOFTENING:
         soft = (_Softened(sheet.membrane, factor), sheet.bending)
         eased = Potential(soft, potential.others, potential.free)
         x = newton(eased, x, max_iterations=most, tolerance=1e-2, kick=kick).x
-    return newton(potential, x, max_iterations=most, tolerance=tolerance, kick=kick)
+    return newton(potential, x, max_iterations=most, tolerance=tolerance)
