@@ -28,6 +28,8 @@ _FILE_KEYS: Mapping[str, tuple[str, float]] = {
     "c_threshold": ("c_threshold_per_mm", 1e-3),
     "texture_scale": ("texture_scale_mm", 1e3),
     "texture_depth": ("texture_depth_mm", 1e3),
+    "perforation_pitch": ("perforation_pitch_mm", 1e3),
+    "perforation_diameter": ("perforation_diameter_mm", 1e3),
     "stress": ("stress_kpa", 1e-3),
     "young": ("young_kpa", 1e-3),
     "element_size": ("element_size_mm", 1e3),

@@ -102,7 +102,7 @@ def run_cluster(
     by_name = {cell.name: cell for cell in cells}
     try:
         client = Client(scheduler, timeout="20s")
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise InputError.single(
             "--scheduler", got=scheduler, expected="the address of a Dask scheduler",
             hint="start one with: dask scheduler",
