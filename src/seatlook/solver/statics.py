@@ -41,12 +41,13 @@ def equilibrium(
 
     Parameters
     ----------
-    max_iterations : ``MOST`` of the method if not given
+    max_iterations : ``MOST`` of the method if not given; that of L-BFGS once Newton's has buckled
     """
     name = method if isinstance(method, str) else "explicit"
     most = MOST[name] if max_iterations is None else max_iterations
     if method == "newton":
         found = _by_newton(sheet, potential, x, tolerance, most)
+        most = MOST["lbfgs"] if max_iterations is None else most
     else:
         found = _descend(sheet, potential, x, method, tolerance=tolerance, most=most)
     for kicks in range(_MOST_KICKS + 1):
@@ -55,7 +56,7 @@ def equilibrium(
         hessian = potential.hessian(found.x, definite=False)
         factor, downhill = factorise(hessian)
         found = replace(found, downhill=downhill, kicks=kicks)
-        left = MOST["lbfgs"] if method == "newton" else most - found.iterations
+        left = most - found.iterations
         if downhill == 0 or kicks == _MOST_KICKS or left <= 0:
             return found
         x = push(potential, found.x, hessian, factor, _KICK * sheet.thickness.max())
