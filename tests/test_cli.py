@@ -116,6 +116,21 @@ def test_doctor_names_the_library_it_found(tmp_path):
     found = json.loads(done.stdout)
     assert found["GL window"].startswith("vtk")
     assert found["cores"] == os.cpu_count()
+    assert found["kernel threads"] >= 1
+    assert found["kernel cache kept"] is True
+    assert done.stderr == "nothing to do: this machine can solve and draw\n"
+    quiet = seatlook("doctor", "--json", "--quiet", cwd=tmp_path)
+    assert quiet.stderr == ""
+
+
+def test_doctor_says_what_to_set(tmp_path):
+    done = seatlook(
+        "doctor", cwd=tmp_path, OMP_NUM_THREADS="999", NUMBA_CACHE_DIR="/proc/none/such"
+    )
+    assert done.returncode == 0
+    assert f"more threads (999) than cores: set OMP_NUM_THREADS={os.cpu_count()} or less" in (
+        done.stderr
+    )
 
 
 HIDDEN = """
@@ -141,7 +156,7 @@ def test_without_a_gl_library_it_ends_with_3_before_any_work(command, demo_scene
         [sys.executable, "-c", HIDDEN, *words], capture_output=True, text=True, check=False
     )
     assert done.returncode == 3
-    assert done.stdout == ""
+    assert ("GL library         -" in done.stdout) == (command == "doctor")
     assert "as root:" in done.stderr
     assert "without root:" in done.stderr
     assert "Traceback" not in done.stderr
