@@ -116,6 +116,9 @@ def test_a_state_becomes_maps_a_picture_and_files(tmp_path):
     assert done.returncode == 0, done.stderr
     folder = tmp_path / "out/state-1"
     assert {p.stem for p in (folder / "maps").iterdir()} == MAPS | TEXTURE
+    page = (folder / "index.html").read_text()
+    for part in ("bent_strip.d3plot, state 1", "C mean [1/mm]", "Checker", "side light"):
+        assert part in page
     picture = np.asarray(Image.open(folder / "picture.png").convert("L"))
     assert picture.shape == (720, 1280)
     assert picture[300:420, 560:720].std() > 3  # grain and highlight, not a flat field

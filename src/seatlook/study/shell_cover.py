@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.mesh import edge_lengths, face_normals, face_vectors
+from seatlook.mesh import face_normals, face_vectors
 from seatlook.model import Cover, FloatArray, IntArray, Material, Shells, ShellState, Solution
 from seatlook.wrinkle.shells import ShellWrinkles, element_frames
 
@@ -64,12 +64,8 @@ def shell_cover(
         for k in range(len(parts))
     ])  # fmt: skip
     panel, owner, look = _panels(reference, faces, part[element], flat)
-    # Nodes on the border of two panels become two vertices, as a seam has two sides.
-    pair = panel[:, None] * np.int64(shells.node_count) + faces
-    vertices, corners = np.unique(pair, return_inverse=True)
-    corners = corners.reshape(-1, 3)
-    node = vertices % shells.node_count
-    rest, warp = _laid_out(reference[node], vertices // shells.node_count, corners, look)
+    corners, node, of_panel = _own_vertices(faces, panel, shells.node_count)
+    rest, warp = _laid_out(reference[node], of_panel, look)
     names = tuple(shells.part_names.get(int(p)) or f"part {p}" for p in parts)
     thickness = [state.thickness[wrinkles.element[part == k]].mean() for k in range(len(parts))]
     cover = Cover(
@@ -82,7 +78,7 @@ def shell_cover(
         materials=tuple(_as_thick(chosen[k], thickness[k]) for k in owner),
         zone=part[element],
         zone_names=names,
-        element_size=float(edge_lengths(state.positions[node], corners).mean()),
+        element_size=float(wrinkles.size.mean()),
     )
     strains = _strains(shells, reference, wrinkles, element, warp[panel])
     return ShellCover(
@@ -145,7 +141,9 @@ def _as_thick(material: Material, thickness: float) -> Material:
 
 def _is_flat(points: FloatArray, faces: IntArray) -> bool:
     """Whether a part lies in its mean plane, with no face turned over in it."""
-    p = points[np.unique(faces)]
+    used = np.zeros(len(points), dtype=bool)
+    used[faces] = True
+    p = points[used]
     area = face_vectors(points, faces)
     normal = area.sum(axis=0)
     size = float(np.linalg.norm(normal))
@@ -183,8 +181,31 @@ def _panel_names(
     return tuple(out)
 
 
+def _own_vertices(
+    faces: IntArray, panel: IntArray, node_count: int
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Give every panel its own vertices, as a seam has two sides.
+
+    Returns
+    -------
+    corners (m, 3), and the node (n,) and the panel (n,) of each vertex
+    """
+    corners = np.empty_like(faces)
+    nodes, count = [], 0
+    for k in range(int(panel.max()) + 1):
+        mine = panel == k
+        used = np.zeros(node_count, dtype=bool)
+        used[faces[mine]] = True
+        # A sort of all corners would cost more than the counting of each panel's nodes.
+        corners[mine] = (count - 1 + np.cumsum(used))[faces[mine]]
+        nodes.append(np.flatnonzero(used))
+        count += len(nodes[-1])
+    owner = np.repeat(np.arange(len(nodes)), [len(own) for own in nodes])
+    return corners, np.concatenate(nodes), owner
+
+
 def _laid_out(
-    points: FloatArray, owner: IntArray, corners: IntArray, look: FloatArray
+    points: FloatArray, owner: IntArray, look: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Plane coordinates (n, 2), panels side by side, and the warp (p, 3) of each."""
     rest = np.zeros((len(points), 2))
