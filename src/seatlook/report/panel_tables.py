@@ -44,23 +44,7 @@ def fit_tables(result: PanelResult, labels: Labels) -> Iterator[Part]:
             (f"agreement, {name}", "judges", "votes", "kendall_u", "p_by_chance", "tie_share"),
             [_agreement(fit)],
         )
-    left, spread = result.side_bias
-    yield (
-        (
-            "judge",
-            "votes",
-            "zeta",
-            "catches",
-            "right",
-            "repeats",
-            "same",
-            "left_share",
-            "seconds",
-            "left_out",
-        ),
-        [tuple(asdict(record).values()) for record in result.records],
-    )
-    yield ("side bias", "left_share", "half_width"), [("all judges", left, spread)]
+    yield from _judges(result)
 
 
 def fit_values(result: PanelResult, labels: Labels) -> dict[str, Any]:
@@ -105,6 +89,14 @@ def calibration_rows(
         "votes": found.votes,
         "verdict": found.verdict,
     }, ""
+
+
+def _judges(result: PanelResult) -> Iterator[Part]:
+    """Yield the figures of every judge, and the side bias of all."""
+    heads = ("judge", "votes", "zeta", "catches", "right", "repeats", "same", "left_share")
+    rows = [tuple(asdict(record).values()) for record in result.records]
+    yield (*heads, "seconds", "left_out"), rows
+    yield ("side bias", "left_share", "half_width"), [("all judges", *result.side_bias)]
 
 
 def _fits(result: PanelResult) -> Iterator[tuple[str, Fit]]:
