@@ -1,4 +1,4 @@
-"""Make the README's pictures: the demo seat as it fits, and with one sewing line 4 % too long.
+"""Make the pictures of README and docs: the demo seat as it fits, and one sewn line 4 % too long.
 
 Run it with: python gallery/pictures.py [FOLDER]
 """
@@ -15,14 +15,20 @@ from seatlook.cli import run
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 LEATHER = ["--material", "black-leather", "--element-size-mm", "6", "--tension-percent", "0.5"]
 SEATS = {"fits": LEATHER, "eased": [*LEATHER, "--ease", "INSERT-BOLSTER_L=4%"]}
-VIEWS = {"black": "images/bulb-right/black-leather.png", "w2": "maps/w2.png"}
+VIEWS = {
+    "black": "images/bulb-right/black-leather.png",
+    "w1": "maps/w1.png",
+    "w2": "maps/w2.png",
+    "w_stretch": "maps/w_stretch.png",
+    "w_compression": "maps/w_compression.png",
+}
 
 
 def main(folder: Path = Path("out"), *, width: int = 800) -> None:
     """Evaluate both seats below ``folder`` and keep their pictures at ``width`` pixels."""
     for seat, options in SEATS.items():
         out = folder / seat
-        code = run(["demo", "--out", str(out), "--resume", *options])
+        code = run(["demo", "--out", str(out), "--resume", "--no-score", *options])
         if code:
             sys.exit(code)
         for view, path in VIEWS.items():
