@@ -3,8 +3,8 @@
 Run it with: python gallery/envelopes.py
 
 Leaves docs/charts/envelopes.csv and .svg; delete the table to run it again. Green: the step holds,
-or converged and within 0.5 % of the length of Newton's shape; yellow: said not to be converged; orange: raised; red would be a wrong answer
-that nobody reports.
+or converged and within 0.5 % of the length of Newton's shape; yellow: said not to be converged;
+orange: raised; red would be a wrong answer that nobody reports.
 """
 
 from __future__ import annotations
