@@ -29,7 +29,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def comparison(folder: Path) -> Comparison:
     scene = io.load_scene(folder / "scene.toml")
     other = io.load_scene(folder / "scene.toml", changes=['pattern.material="suede"'])
-    return compare({"pvc": scene, "suede cover": other}, keep=folder / "kept")
+    return compare({"pvc": scene, "suede cover": other}, keep=str(folder / "kept"))
 
 
 def test_pictures_are_named_drawn_once_and_at_one_exposure(comparison):
@@ -103,10 +103,10 @@ def test_a_kept_result_is_taken_and_a_stale_one_is_not(folder, comparison, monke
     solved = []
     monkeypatch.setattr(module, "solve", lambda cover: solved.append(cover) or solve(cover))
     scenes = {name: v.scene for name, v in comparison.variants.items()}
-    compare(scenes, keep=folder / "kept")
+    compare(scenes, keep=str(folder / "kept"))
     assert solved == []
     scenes["pvc"] = replace(scenes["pvc"], digest="another")
-    compare(scenes, keep=folder / "kept")
+    compare(scenes, keep=str(folder / "kept"))
     assert len(solved) == 1
 
 

@@ -23,7 +23,7 @@ class Cell:
     png: bytes
     ev100: float | None = None
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path | str) -> None:
         """Write a ``.png`` file.
 
         Raises
@@ -31,6 +31,7 @@ class Cell:
         InputError
             Another file ending.
         """
+        path = Path(path)
         if path.suffix != ".png":
             raise InputError.single("picture file", got=path.name, expected="a .png name")
         write_bytes(path, self.png)

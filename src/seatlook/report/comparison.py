@@ -197,7 +197,7 @@ def compare(
     *,
     changes: Iterable[str] = (),
     results: Mapping[str, Path | str] = MappingProxyType({}),
-    keep: Path | None = None,
+    keep: Path | str | None = None,
     progress: Progress | None = None,
 ) -> Comparison:
     """Solve several scenes, or read their results, and put them side by side.
@@ -230,7 +230,11 @@ def compare(
     for name, scene in named.items():
         if progress is not None:
             progress("solve", variant=name)
-        solution = io.read_result(results[name]) if name in results else _solved(scene, name, keep)
+        solution = (
+            io.read_result(results[name])
+            if name in results
+            else _solved(scene, name, None if keep is None else Path(keep))
+        )
         indices = wrinkle_map(scene, solution)
         variants[name] = Variant(
             name=name, scene=scene, solution=solution, indices=indices,
