@@ -80,6 +80,12 @@ def hooks(
     from seatlook.solver.hooks import RingPull, overpulled, ring_pulls
 
     solution = io.read_result(result)
+    rings = ring_pulls(solution)
+    if not rings and any(anchor.kind == "hook" for anchor in solution.cover.anchors):
+        raise InputError.single(
+            "result", got="hooks without pulls", expected="a result of this version",
+            file=result, hint="solve it again",
+        )  # fmt: skip
     units = {"at": ("at_mm", 1e3), "gap": ("gap_mm", 1e3), "pull": ("pull_n", 1.0)}
     units |= {"limit": ("limit_n", 1.0), **{k: (f"{k}_mm", 1e3) for k in "xyz"}}
     names = [f.name for f in fields(RingPull)]
@@ -89,7 +95,7 @@ def hooks(
             value * units[name][1] if name in units and value is not None else value
             for name, value in zip(names, astuple(ring), strict=True)
         )
-        for ring in ring_pulls(solution)
+        for ring in rings
     ]
     table(heads, rows, json=json)
     if csv is not None:

@@ -94,7 +94,7 @@ def film(
     camera: Camera,
     width: int = 480,
     seconds: float = 6.0,
-    most: int = 48,
+    most: int = 24,
 ) -> tuple[Path, Path]:
     """Write ``timeline.png``, a picture per stage, and ``timeline.gif``, and return their paths.
 
