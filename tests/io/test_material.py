@@ -150,7 +150,8 @@ def test_bad_colour(write, problems):
     path = write("x.toml", LEATHER.replace("[0.025, 0.025, 0.026]", '"#12345"'))
     (message,) = problems(read_material, path)
     assert message.endswith(
-        "appearance.albedo: got '#12345', expected \"#rrggbb\" or three linear numbers from 0 to 1"
+        "appearance.albedo: got '#12345', "
+        'expected "#rrggbb", "lab(L, a, b)" or three linear numbers from 0 to 1'
     )
 
 
@@ -168,3 +169,17 @@ def test_foam_curve_must_rise(write, problems):
     assert problems(read_foam_material, path) == [
         "f.toml:5: foam.stress_kpa: got 8 numbers, expected 9, one for each strain"
     ]
+
+
+def test_measured_colour_of_the_lab(tmp_path):
+    """CIE L*a*b* as a spectrophotometer gives it; a colour outside sRGB is refused."""
+    file = tmp_path / "red.toml"
+    text = material_path("suede").read_text()
+    albedo = "albedo = [0.16, 0.15, 0.15]"
+    assert albedo in text
+    file.write_text(text.replace(albedo, 'albedo = "lab(53.24, 80.09, 67.20)"'))
+    assert read_material(file).appearance.albedo == pytest.approx([1.0, 0.0, 0.0], abs=2e-3)
+    for bad in ("lab(60, 90, -120)", "lab(60, 90)", "rgb(1, 2, 3)"):
+        file.write_text(text.replace(albedo, f'albedo = "{bad}"'))
+        with pytest.raises(InputError, match=r"appearance\.albedo: got"):
+            read_material(file)

@@ -12,6 +12,7 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.io._schema import MM, Array, Kind, Number, Rows, Table, Text, Texts
 from seatlook.io._toml import Document, Key
+from seatlook.io.panorama import read_panorama
 from seatlook.model import LIGHTS, VIEWS, Camera, FloatArray, Light, Rig, named_view
 
 
@@ -61,6 +62,8 @@ POINT = Array(shape=(3,), scale=MM)
 RIG: dict[str, Kind] = {
     "name": Text(required=True),
     "ambient_cd_m2": Number(low=0, high=1e6, default=0.0),
+    "panorama": Text(),
+    "panorama_cd_m2": Number(above=0, default=1.0),
     "ev100": Number(low=-10, high=30),
     "light": Rows(LightTable()),
 }
@@ -98,9 +101,21 @@ def make_rigs(document: Document, rows: list[dict[str, Any]]) -> tuple[Rig, ...]
                     lights=tuple(lights),
                     ambient=row["ambient_cd_m2"],
                     ev100=row["ev100"],
+                    panorama=_sky(document, number, row),
                 )
             )
     return tuple(rigs)
+
+
+def _sky(document: Document, number: int, row: dict[str, Any]) -> FloatArray | None:
+    """Panorama [cd/m2] of a rig, beside the scene file; ``panorama_cd_m2`` is what 1 stands for."""
+    if row["panorama"] is None:
+        return None
+    path = document.file.parent / row["panorama"]
+    if not path.is_file():
+        document.report(("rig", number, "panorama"), row["panorama"], "an .hdr file that exists")
+        return None
+    return np.asarray(row["panorama_cd_m2"] * read_panorama(path))
 
 
 def make_cameras(document: Document, row: dict[str, Any], centre: FloatArray) -> tuple[Camera, ...]:

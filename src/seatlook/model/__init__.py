@@ -2,7 +2,18 @@
 
 from seatlook.model._check import FloatArray, IntArray
 from seatlook.model.cover import Anchor, Cover, Hem, Points, Solution, Stage, Stitching, WrinkleMap
-from seatlook.model.light import LIGHTS, VIEWS, Camera, Light, Rig, bulb, direction, named_view, sun
+from seatlook.model.light import (
+    LIGHTS,
+    VIEWS,
+    Camera,
+    Light,
+    Rig,
+    booth,
+    bulb,
+    direction,
+    named_view,
+    sun,
+)
 from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
 from seatlook.model.scene import Frame, Hook, Limit, Pose, Scene, ZoneBox
@@ -44,6 +55,7 @@ __all__ = [
     "Stitching",
     "WrinkleMap",
     "ZoneBox",
+    "booth",
     "bulb",
     "direction",
     "named_view",

@@ -95,7 +95,45 @@ def bulb(
     )
 
 
-LIGHTS: dict[str, Callable[..., Light]] = {"sun": sun, "bulb": bulb}
+# Chromaticity x, y in CIE 1931 (CIE 15:2018); TL84 is the fluorescent lamp F11.
+ILLUMINANTS = MappingProxyType(
+    {"D65": (0.31272, 0.32903), "A": (0.44758, 0.40745), "TL84": (0.38052, 0.37713)}
+)
+
+
+def booth(
+    *,
+    illuminant: str,
+    illuminance_lux: float = 1500.0,
+    elevation_deg: float = 90.0,
+    azimuth_deg: float = 0.0,
+    angular_diameter_deg: float = 40.0,
+    name: str = "booth",
+) -> Light:
+    """Diffuser of a light booth, of one of the ``ILLUMINANTS``.
+
+    Colours are seen through three channels: metamerism under the lines of TL84 is not.
+
+    Examples
+    --------
+    >>> booth(illuminant="D65").colour.round(2).tolist()
+    [1.0, 1.0, 1.0]
+    """
+    if illuminant not in ILLUMINANTS:
+        raise InputError.single(
+            "booth.illuminant", got=repr(illuminant), expected=f"one of {', '.join(ILLUMINANTS)}"
+        )
+    return Light(
+        name=name,
+        intensity=illuminance_lux,
+        vector=direction(azimuth_deg, elevation_deg),
+        near=False,
+        colour=linear_srgb(*ILLUMINANTS[illuminant]),
+        size=float(np.radians(angular_diameter_deg)),
+    )
+
+
+LIGHTS: dict[str, Callable[..., Light]] = {"sun": sun, "bulb": bulb, "booth": booth}
 
 
 def planck_colour(temperature_k: float) -> FloatArray:
@@ -116,7 +154,11 @@ def planck_colour(temperature_k: float) -> FloatArray:
         y = -0.9549476 * x**3 - 1.37418593 * x**2 + 2.09137015 * x - 0.16748867
     else:
         y = 3.0817580 * x**3 - 5.87338670 * x**2 + 3.75112997 * x - 0.37001483
-    xyz = np.array([x / y, 1.0, (1 - x - y) / y])
+    return linear_srgb(x, y)
+
+
+def linear_srgb(x: float, y: float) -> FloatArray:
+    """Linear sRGB (3,) of luminance 1 of a chromaticity (IEC 61966-2-1)."""
     to_rgb = np.array(
         [
             [3.2404542, -1.5371385, -0.4985314],
@@ -125,7 +167,7 @@ def planck_colour(temperature_k: float) -> FloatArray:
         ]
     )
     # Below about 1900 K blue leaves the sRGB triangle; a display cannot show it.
-    return np.asarray(np.maximum(to_rgb @ xyz, 0.0))
+    return np.asarray(np.maximum(to_rgb @ np.array([x / y, 1.0, (1 - x - y) / y]), 0.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

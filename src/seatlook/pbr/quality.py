@@ -14,21 +14,32 @@ class Quality:
     Parameters
     ----------
     factor : samples per pixel and axis
-    rays : shadow rays per sample where a shadow has its edge
+    rays : shadow rays per sample where a shadow has its edge; 0 for no shadows
     strata : the half-space is seen along strata^2 rays per vertex; 0 leaves it all open
     bounces : how often light may go from cover to cover
+    error : FLIP against the path tracer, the worst of ``gallery/work_precision_render.py``
     """
 
     factor: int
     rays: int
     strata: int
     bounces: int
+    error: float
 
 
+# Cheapest first.
+TIERS: dict[str, Quality] = {
+    "T0": Quality(factor=1, rays=0, strata=0, bounces=0, error=1.0),
+    "T1": Quality(factor=1, rays=1, strata=0, bounces=0, error=1.0),
+    "T2": Quality(factor=2, rays=4, strata=0, bounces=0, error=1.0),
+    "T3": Quality(factor=2, rays=4, strata=8, bounces=1, error=1.0),
+    "T4": Quality(factor=4, rays=4, strata=16, bounces=3, error=1.0),
+}
 QUALITIES: dict[str, Quality] = {
-    "draft": Quality(factor=1, rays=1, strata=0, bounces=0),
-    "standard": Quality(factor=2, rays=4, strata=8, bounces=1),
-    "high": Quality(factor=4, rays=4, strata=16, bounces=3),
+    "draft": TIERS["T1"],
+    "standard": TIERS["T3"],
+    "high": TIERS["T4"],
+    **TIERS,
 }
 
 
@@ -42,3 +53,18 @@ def quality_named(name: str) -> Quality:
             hint=did_you_mean(name, QUALITIES),
         )
     return QUALITIES[name]
+
+
+def quality_within(target_error: float) -> Quality:
+    """Return the cheapest tier whose charted FLIP is at most ``target_error``.
+
+    Raises
+    ------
+    InputError
+        No tier is that good.
+    """
+    for tier in TIERS.values():
+        if tier.error <= target_error:
+            return tier
+    best = min(tier.error for tier in TIERS.values())
+    raise InputError.single("target_error", got=target_error, expected=f"at least {best:g}")

@@ -21,7 +21,7 @@ from seatlook.pbr.kernels import bvh, light, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.kernels.stitch import Thread
 from seatlook.pbr.picture import Image
-from seatlook.pbr.quality import Quality, quality_named
+from seatlook.pbr.quality import Quality, quality_named, quality_within
 from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, sky_levels, white_of
 from seatlook.pbr.surface import Surface, drawn_surface, neighbour_mean
 from seatlook.pbr.tables import load_tables
@@ -60,14 +60,23 @@ class Studio:
             normals = drawn_surface(shading).mesh.normals
             self.surface = replace(self.surface, mesh=self.surface.mesh._replace(normals=normals))
         self._smooth = neighbour_mean(solution.cover.faces, len(solution.positions))
+        self._gathering = _gathering(self.surface.coarse)
         self._bvh = bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
         self._cache: OrderedDict[Hashable, Any] = OrderedDict()
 
     def render(
-        self, appearance: Looks = None, *, rig: Rig, camera: Camera, quality: str = "standard"
+        self,
+        appearance: Looks = None,
+        *,
+        rig: Rig,
+        camera: Camera,
+        quality: str = "standard",
+        target_error: float | None = None,
     ) -> Image:
         """Draw the cover; see :func:`render`."""
         level = quality_named(quality)
+        if target_error is not None:
+            level = quality_within(target_error)
         look = self._look(appearance)
         ids = self.faces(camera, level.factor)
         seen = self._visibility(rig, camera, level, ids)
@@ -144,6 +153,8 @@ class Studio:
         self, rig: Rig, k: int, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
     ) -> npt.NDArray[np.uint8]:
         share = np.ones(ids.shape)
+        if level.rays == 0:
+            return np.full(ids.shape, 255, dtype=np.uint8)
         rays.shadows(
             self._bvh,
             self.surface.mesh,
@@ -161,7 +172,7 @@ class Studio:
     def _around(self, rig: Rig, materials: np.ndarray, level: Quality) -> light.Around:
         """Sky and bounced light at every vertex, found at the solver's vertices."""
         n, k = len(self.surface.mesh.vertices), self.surface.vertices
-        spread, mesh = self.surface.refined.spread, self.surface.coarse
+        spread, mesh = self.surface.refined.spread, self._gathering
         panorama = sky_levels(rig)
         sky, sent, open_ = np.zeros((n, 3)), np.zeros((n, 3)), np.ones(n)
         strata = level.strata or 8
@@ -187,7 +198,7 @@ class Studio:
 
     def _hits(self, strata: int) -> npt.NDArray[np.int32]:
         """Solver's face that each vertex sees along each direction."""
-        mesh = self.surface.coarse
+        mesh = self._gathering
         hits = np.empty((len(mesh.vertices), strata * strata), dtype=np.int32)
         rays.gather(self._bvh, mesh, strata, hits)
         children = self.surface.faces // len(mesh.faces)
@@ -232,6 +243,7 @@ def render(
     rig: Rig,
     camera: Camera,
     quality: str = "standard",
+    target_error: float | None = None,
 ) -> Image:
     """Draw a solved cover under a rig.
 
@@ -240,7 +252,10 @@ def render(
     appearance : None for the panels' own materials, one Appearance for all panels, or a mapping
         from panel name to Appearance; panels not named keep their own
     quality : ``draft`` (hard shadows, no smoothing), ``standard`` (2 x 2 samples, soft shadows,
-        covered sky, one bounce) or ``high`` (4 x 4, three bounces)
+        covered sky, one bounce) or ``high`` (4 x 4, three bounces); also ``T0`` to ``T4``, of
+        which these are T1, T3 and T4
+    target_error : instead of ``quality``: the cheapest tier whose charted FLIP against path
+        tracing is at most this
 
     Returns
     -------
@@ -255,7 +270,9 @@ def render(
     -----
     A studio is kept for the two solutions drawn last; make your own :class:`Studio` to decide.
     """
-    return studio(solution).render(appearance, rig=rig, camera=camera, quality=quality)
+    return studio(solution).render(
+        appearance, rig=rig, camera=camera, quality=quality, target_error=target_error
+    )
 
 
 _studios: OrderedDict[int, Studio] = OrderedDict()
@@ -311,6 +328,18 @@ def _check(radiance: FloatArray, ids: np.ndarray, seen: np.ndarray, camera: Came
         raise RenderError(f"camera {camera.name}: the picture holds values that are not finite")
     if radiance.max() <= 0 and (seen[:, ids >= 0] > 0).any():
         raise RenderError(f"camera {camera.name}: the picture is black though a light reaches it")
+
+
+def _gathering(mesh: surface.Mesh) -> surface.Mesh:
+    """Mesh whose vertices are the points at which light is gathered."""
+    sides = np.stack([mesh.faces, mesh.faces[:, [1, 2, 0]]], axis=-1).reshape(-1, 2)
+    _, which, count = np.unique(np.sort(sides), axis=0, return_inverse=True, return_counts=True)
+    lone = np.flatnonzero(count[which.ravel()] == 1)
+    face = np.full(len(mesh.vertices), -1)
+    face[sides[lone].ravel()] = np.repeat(lone // 3, 2)
+    points = np.empty(mesh.vertices.shape)
+    rays.inset(mesh, face, points)
+    return mesh._replace(vertices=points)
 
 
 def _edge_width(light: Light, camera: Camera) -> int:

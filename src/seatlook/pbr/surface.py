@@ -116,7 +116,7 @@ def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
     return np.ascontiguousarray(n / length)
 
 
-def neighbour_mean(faces: IntArray, n: int, sweeps: int = 2) -> Callable[[FloatArray], FloatArray]:
+def neighbour_mean(faces: IntArray, n: int, sweeps: int = 1) -> Callable[[FloatArray], FloatArray]:
     """Average over a vertex and its neighbours, per panel: takes the noise off gathered light."""
     pairs = np.stack([faces, faces[:, [1, 2, 0]]], axis=-1).reshape(-1, 2)
     ones = np.ones(len(pairs))

@@ -167,6 +167,22 @@ def shadows(bvh, mesh, eye, ids, lights, k, factor, rays, reach, out):
 
 
 @njit(cache=True)
+def inset(mesh, face, out):
+    """Points (n, 3) at which light is gathered: vertices, and inside ``face`` those on an edge.
+
+    ``face`` (n,): -1 within a panel. On a seam the point of a vertex touches the other panel.
+    """
+    for i in range(len(out)):
+        p, f = row(mesh.vertices, i), face[i]
+        if f >= 0:
+            b1 = 0.6 if mesh.faces[f, 1] == i else 0.2
+            b2 = 0.6 if mesh.faces[f, 2] == i else 0.2
+            p = lift(mesh, f, b1, b2, blend(mesh.vertices, mesh.faces, f, b1, b2))
+        for k in range(3):
+            out[i, k] = p[k]
+
+
+@njit(cache=True)
 def irradiance(bvh, mesh, lights, out):
     """Direct irradiance [lux] (n, 3) at every vertex, one ray per light."""
     stack = new_stack()
