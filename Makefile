@@ -28,7 +28,7 @@ demo: $(VENV)/.gl
 test: $(VENV)/.gl $(VENV)/.dev
 	$(PYTEST) -n auto --dist loadfile -m "not validate and not browser and not bench" $(TESTS)
 
-validate: $(VENV)/.gl $(VENV)/.dev
+validate: $(VENV)/.gl $(VENV)/.dev $(VENV)/.reference
 	$(PYTEST) -m validate --timeout 3600 tests
 
 browser: $(VENV)/.gl $(VENV)/.dev $(VENV)/.browser
@@ -66,6 +66,10 @@ $(VENV)/.dev: $(VENV)/.packages
 
 $(VENV)/.gl: $(VENV)/.packages .ci/gl.sh
 	bash .ci/gl.sh $(VENV)
+	@touch $@
+
+$(VENV)/.reference: $(VENV)/.dev .ci/reference.sh
+	bash .ci/reference.sh $(VENV)
 	@touch $@
 
 $(VENV)/.browser: $(VENV)/.dev .ci/browser.sh

@@ -1,0 +1,86 @@
+"""Pictures against path tracing with one BRDF; protocol in gallery/render_error.py (``-s``)."""
+
+import numpy as np
+import pytest
+
+from seatlook.pbr import brdf
+from seatlook.pbr.studio import Studio
+
+pytest.importorskip("flip_evaluator", reason="the dependency group reference is not installed")
+pytest.importorskip("mitsuba", reason="the dependency group reference is not installed")
+
+from path_tracer import find_llvm, layered_bsdf, load_mitsuba, trace
+from render_error import DIRECT, FULL, camera, compare, look, relief_of, scene
+
+pytestmark = [
+    pytest.mark.validate,
+    pytest.mark.render,
+    pytest.mark.skipif(find_llvm() is None, reason="Mitsuba needs LLVM 17 or later"),
+]
+# (direct light, full light)
+BARS = {2: 0.006, 8: 0.02}
+MISSED = pytest.mark.xfail(strict=True, reason="above the bar; see docs/renderer.md")
+
+
+@pytest.fixture(scope="module")
+def studio():
+    return Studio(scene())
+
+
+def difference(studio, material, rig, *, depth, tier, textured):
+    """FLIP and block error, and the FLIP of the reference's own noise; 2 x 64 samples per pixel."""
+    appearance = look(material, textured=textured)
+    a, b = (
+        trace(
+            studio,
+            appearance,
+            rig=rig,
+            camera=camera(),
+            depth=depth,
+            spp=64,
+            relief=relief_of(appearance),
+            seed=seed,
+        )
+        for seed in (0, 1)
+    )
+    image = studio.render(appearance, rig=rig, camera=camera(), quality=tier)
+    floor = compare(a, b, rig=rig, cover=image.cover).flip / 2
+    got = compare((a + b) / 2, image.radiance, rig=rig, cover=image.cover)
+    print(f"\n  {material} {rig.name} textured={textured}: {got}, floor {floor:.4f}", end="")
+    return got
+
+
+@pytest.mark.parametrize("material", ["black-leather", "suede"])
+def test_the_path_tracer_has_the_same_brdf(material):
+    mi = load_mitsuba()
+    import drjit as dr
+
+    rng = np.random.default_rng(0)
+    v, l = rng.standard_normal((2, 1000, 3))
+    v[:, 2], l[:, 2] = np.abs(v[:, 2]) + 0.02, np.abs(l[:, 2]) + 0.02
+    v, l = (d / np.linalg.norm(d, axis=1, keepdims=True) for d in (v, l))
+    appearance = look(material, textured=False)
+    si = dr.zeros(mi.SurfaceInteraction3f, len(v))
+    si.wi, si.n = mi.Vector3f(v.T.astype(np.float32)), mi.Normal3f(0, 0, 1)
+    axes = np.eye(3).tolist()
+    si.sh_frame = mi.Frame3f(*(mi.Vector3f(*axis) for axis in axes))
+    bsdf = layered_bsdf(mi, appearance, None)
+    got = np.array(bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(l.T.astype(np.float32)))).T
+    assert np.allclose(got, brdf.evaluate(appearance, v, l) * l[:, 2:], rtol=1e-3)
+
+
+@pytest.mark.parametrize("textured", [False, pytest.param(True, marks=MISSED)])
+@pytest.mark.parametrize("material", ["black-leather", "suede"])
+@pytest.mark.parametrize("light", list(DIRECT))
+def test_direct_light(studio, material, light, textured):
+    got = difference(studio, material, DIRECT[light], depth=2, tier="T2", textured=textured)
+    assert got.flip <= BARS[2]
+
+
+@pytest.mark.parametrize("textured", [False, pytest.param(True, marks=MISSED)])
+@pytest.mark.parametrize("material", [pytest.param("black-leather", marks=MISSED), "suede"])
+def test_full_light(studio, material, textured):
+    (rig,) = FULL.values()
+    got = difference(studio, material, rig, depth=8, tier="T3", textured=textured)
+    assert got.flip <= BARS[8]
+    assert got.block <= 0.015
