@@ -163,8 +163,8 @@ def evaluate_scene(
 ) -> int:
     """Evaluate a scene, print its zones and return the exit code."""
     from seatlook.evaluation import evaluate as run_chain
-    from seatlook.report.gather import write_report
     from seatlook.model.scene import SCORE_MEASURES
+    from seatlook.report.gather import write_report
     from seatlook.report.score import visibility
 
     score = score or any(limit.measure in SCORE_MEASURES for limit in scene.limits)
