@@ -50,7 +50,7 @@ def _work(solution: Solution) -> Table | None:
     rows = (
         ("work of seams, hooks and frame", balance.ties),
         ("work of the weight", balance.weight),
-        ("stored in cover and foam", -balance.stored),
+        ("stored, less what the uneven panels began with", -balance.stored),
         ("friction on the foam", -balance.friction),
         ("damping by the time steps", -balance.damping),
         ("left over", balance.unexplained),
