@@ -106,6 +106,13 @@ def test_free_edges_are_pulled_to_curves_of_their_length(started):
         assert length == pytest.approx(scene.pattern.edge_length(frame.edges[0]), rel=0.06)
 
 
+def test_curves_of_neighbours_share_their_ends(started):
+    curves = io.load_scene(started / "scene.toml").foam.curves
+    ends = np.array([curve[k] for curve in curves.values() for k in (0, -1)])
+    away = np.linalg.norm(ends[:, None] - ends, axis=2) + np.diag(np.ones(len(ends)))
+    assert away.min(axis=1).max() < 1e-9
+
+
 def test_wires_are_hooked_to_the_seams_above_them(own, demo_scene, capsys):
     words = ["init", str(own / "cover.dxf"), str(own / "foam.obj"), "--out", str(own / "b")]
     assert run([*words, "--wires", str(demo_scene.with_name("wires.toml")), "--json"]) == 0

@@ -217,19 +217,37 @@ def _curves(
     """For each free edge, the stretch of the foam's girth that it comes to lie on."""
     placed = {name: _placed(pattern, name, poses) for name in free}
     ends = {(name, k): line[k, :2] for name, line in placed.items() for k in (0, -1)}
+    meet = {
+        end: [other for other, e in ends.items() if np.hypot(*(e - at)) < _MEET]
+        for end, at in ends.items()
+    }
     curves = {}
-    for name, line in placed.items():
+    for name in placed:
         panel = pattern.edges[name].panel
-        other = pattern.panel(panel).outline
-        reach = _reach(pattern.edge_points(name), other)
+        reach = _reach(pattern.edge_points(name), pattern.panel(panel).outline)
         rim = _girth(foam, max(fall[panel] - reach, float(foam.vertices[:, 2].min())))
         # Ends of neighbours are sewn together: both go where they meet half way.
-        meet = [
-            np.mean([e for e in ends.values() if np.hypot(*(e - line[k, :2])) < _MEET], axis=0)
-            for k in (0, -1)
-        ]
-        curves[name] = _along(rim, meet[0], meet[1])
-    return curves
+        first, last = (np.mean([ends[e] for e in meet[name, k]], axis=0) for k in (0, -1))
+        curves[name] = _along(rim, first, last)
+    return {name: _joined(name, curves, meet) for name in curves}
+
+
+def _joined(
+    name: str,
+    curves: Mapping[str, FloatArray],
+    meet: Mapping[tuple[str, int], Sequence[tuple[str, int]]],
+) -> FloatArray:
+    """The curve with its ends at the very points where its neighbours' are.
+
+    Two targets for one sewn corner would pull its seam open.
+    """
+    curve = curves[name]
+    shift = [
+        np.mean([curves[other][k] for other, k in meet[name, end]], axis=0) - curve[end]
+        for end in (0, -1)
+    ]
+    share = np.linspace(0.0, 1.0, len(curve))[:, None]
+    return np.asarray(curve + (1 - share) * shift[0] + share * shift[1])
 
 
 def _reach(edge: FloatArray, outline: FloatArray) -> float:
