@@ -144,6 +144,7 @@ def test_holes_take_their_share_of_the_light_near_and_far(card):
 @pytest.mark.render
 def test_target_error_picks_the_cheapest_tier(card):
     errors = [tier.error for tier in TIERS.values()]
+    assert errors == sorted(errors, reverse=True)
     assert quality_within(1.0) is TIERS["T0"]
     assert quality_within(min(errors)).error == min(errors)
     rig = Rig(name="b", lights=(bulb(position_mm=(0, 0, 400)),))
