@@ -60,7 +60,7 @@ def test_panorama_of_a_rig(demo_scene):
     from seatlook.io import load_scene
 
     text = demo_scene.read_text()
-    name = 'ambient_cd_m2 = 4000.0'
+    name = "ambient_cd_m2 = 4000.0"
     assert name in text
     scene = demo_scene.with_name("with-sky.toml")
     scene.write_text(text.replace(name, 'panorama = "sky.hdr"\npanorama_cd_m2 = 100.0', 1))

@@ -67,8 +67,8 @@ def test_hooks_go_down_and_foam_grows():
 
 @pytest.mark.parametrize("kind", ["seam_offset_mm", "ease_percent", "hook_depth_mm"])
 def test_an_unknown_seam_or_curve_is_named(kind):
-    with pytest.raises(InputError, match=f"irregularity.input {kind}: got 'midle'"):
-        irregular(two_panels(), [tolerance(kind, "midle")], [1.0])
+    with pytest.raises(InputError, match=f"irregularity.input {kind}: got 'nowhere'"):
+        irregular(two_panels(), [tolerance(kind, "nowhere")], [1.0])
 
 
 def test_the_input_that_matters_is_found():
