@@ -178,7 +178,8 @@ def chart(rows: list[dict[str, str]]) -> None:
         found = defaultdict(list)
         for r in rows:
             if r["light"] == light and r["series"] != "floor":
-                found[r["series"], r["parameter"]].append(
+                grain = ", with grain" if r["case"].endswith("grain") else ""
+                found[r["series"] + grain, r["parameter"]].append(
                     (float(r["cpu_seconds"]), float(r["flip"]))
                 )
         series = defaultdict(list)
@@ -192,6 +193,8 @@ def chart(rows: list[dict[str, str]]) -> None:
                 panel.annotate(point[0], point[1:], xytext=(4, 4), textcoords="offset points")
         panel.axhline(bar, color="grey", lw=0.8, ls="--")
         panel.set(xlabel="CPU seconds of a picture, 640 x 360", title=f"{light} light")
+        panel.xaxis.set_minor_formatter("")
+        panel.set_xlim(0.15, 10)
         panel.grid(alpha=0.3)
     panels[0].set_ylabel("FLIP against path tracing, worst of the set")
     panels[0].legend()
