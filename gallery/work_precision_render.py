@@ -39,6 +39,7 @@ from seatlook.pbr.studio import Studio  # noqa: E402
 
 COLUMNS = ("light", "case", "series", "parameter", "cpu_seconds", "flip", "block_error")
 SAMPLES = 64
+COLOURS = {"seatlook": "C0", "seatlook, with grain": "C1", "Mitsuba 3": "C2", "PyVista PBR": "C3"}
 BARS = {"direct": 0.006, "full": 0.02}
 
 
@@ -188,7 +189,7 @@ def chart(rows: list[dict[str, str]]) -> None:
             series[name].append((seconds.mean(), flips.max(), parameter))
         for name, points in series.items():
             x, y, labels = zip(*points, strict=True)
-            panel.loglog(x, y, "o-", label=name)
+            panel.loglog(x, y, "o-", label=name, color=COLOURS[name])
             for point in zip(labels, x, y, strict=True):
                 panel.annotate(point[0], point[1:], xytext=(4, 4), textcoords="offset points")
         panel.axhline(bar, color="grey", lw=0.8, ls="--")
