@@ -20,7 +20,7 @@ def reflected(appearance, v, n=256):
     tables, material = load_tables(), pack_materials([appearance])
     row = np.empty((1, len(tables.scale_mean)))
     coupling(tables, material, row)
-    seen = view_of(tables, material[0], appearance.roughness, 1.0, 0.0, *v)
+    seen = view_of(tables, material[0], appearance.roughness, tuple(appearance.albedo), *v)
     alpha = min(seen.alpha_x, seen.alpha_y)
     if appearance.coat > 0:
         alpha = min(alpha, appearance.coat_roughness**2)
@@ -54,6 +54,6 @@ def _quadrature(tables, materials, mean, seen, alpha, n, total):
                 hx, hy, hz = hx * s, hy * s, hz * s
                 VoH = max(hx * vx + hy * vy + hz * vz, 1e-12)
                 density = z / np.pi + D_GGX(alpha, alpha, hx, hy, hz) * hz / (4 * VoH)
-                brdf(tables, materials[0], mean, seen, x, y, z, f)
+                brdf(tables, materials[0], mean, seen, 0.0, x, y, z, f)
                 for k in range(3):
                     total[k] += f[k] * z / density / (n * n)
