@@ -31,8 +31,7 @@ def load_textures(*which: int) -> Textures:
     """Relief maps with those filled in that are asked for; each is made once per process."""
     for one in which:
         _make(one)
-    none = np.empty((0, _START[-1], 4), dtype=np.float32)
-    return Textures(_texels(), none, _START[:-1], SIZE, float(CELLS))
+    return Textures(_texels(), _START[:-1], SIZE, float(CELLS))
 
 
 @functools.cache

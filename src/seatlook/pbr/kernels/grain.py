@@ -15,13 +15,11 @@ class Textures(NamedTuple):
     """All relief maps with their mip levels, ``texels`` (k, q, 4) float32.
 
     Channels: slope along u and v and their mean variance, for a depth of one cell; then the share
-    of the base colour that the hollows leave. ``colours`` (k, q, 4) float32: base colour and
-    roughness of the measured maps, which follow the ``BUILT_IN`` ones. ``start`` (levels,): where
-    each level begins; ``size``: texels across level 0; ``cells``: cells of the grain across a tile.
+    of the base colour that the hollows leave. ``start`` (levels,): where each level begins;
+    ``size``: texels across level 0; ``cells``: cells of the grain across a tile.
     """
 
     texels: npt.NDArray[np.float32]
-    colours: npt.NDArray[np.float32]
     start: npt.NDArray[np.int64]
     size: int
     cells: float
@@ -29,7 +27,6 @@ class Textures(NamedTuple):
 
 # Order of the maps, and share of the colour by which a stroke of the hand changes the nap.
 LEATHER, SUEDE, WEAVE = 0, 1, 2
-BUILT_IN = 3
 _STROKE = 0.035
 # Texels are as wide as this share of a sample: the levels' own filter is wider than a box, and the
 # steep narrow folds of a grain are no Gaussian that roughness could stand for.
@@ -74,13 +71,6 @@ def _filtered(t, textures, material, u, v, width):
         low[2] + mix * (high[2] - low[2]),
         low[3] + mix * (high[3] - low[3]),
     )
-
-
-@leaf()
-def measured(textures, material, u, v, width):
-    """Base colour, as three numbers, and roughness of a measured map."""
-    which = material.texture - BUILT_IN
-    return _filtered(textures.colours[which], textures, material, u, v, width)
 
 
 @leaf()

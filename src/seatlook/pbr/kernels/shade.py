@@ -10,7 +10,7 @@ from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, view_of
-from seatlook.pbr.kernels.grain import BUILT_IN, Textures, grain, holes, measured
+from seatlook.pbr.kernels.grain import Textures, grain, holes
 from seatlook.pbr.kernels.light import (
     SMALL,
     above_horizon,
@@ -95,20 +95,13 @@ def _pattern_at(mesh, f, b1, b2):
 def _detail(mesh, look, material, f, hit, n, v):
     """Normal with relief and thread, base colour, roughness and light kept by the holes."""
     b1, b2, t, plane, _, spread = hit
-    roughness, r, g, b = (
-        material.roughness,
-        material.albedo[0],
-        material.albedo[1],
-        material.albedo[2],
-    )
+    roughness = material.roughness
     share, lighter, kept = 1.0, 0.0, 1.0
     if material.texture >= 0 or material.perforation_diameter > 0.0:
         u, w = _pattern_at(mesh, f, b1, b2)
         width = t * spread / np.sqrt(max(0.05, dot(n, v)))
         if material.texture >= 0:
             warp, weft = _frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
-            if material.texture >= BUILT_IN:
-                r, g, b, roughness = measured(look.textures, material, u, w, width)
             su, sv, roughness, share = grain(look.textures, material, roughness, u, w, width)
             n = unit(along(along(n, -su, warp), -sv, weft))
         if material.perforation_diameter > 0.0:
@@ -125,7 +118,9 @@ def _detail(mesh, look, material, f, hit, n, v):
         lighter = covered * look.thread.lighter
         roughness += covered * max(0.0, 0.6 - roughness)
     share *= 1.0 - lighter
-    return n, (r * share + lighter, g * share + lighter, b * share + lighter), roughness, kept
+    base = material.albedo
+    colour = (base[0] * share + lighter, base[1] * share + lighter, base[2] * share + lighter)
+    return n, colour, roughness, kept
 
 
 @leaf()
