@@ -109,4 +109,4 @@ def test_damage_is_refused_with_a_message(tmp_path, name):
 @pytest.mark.validate
 @pytest.mark.parametrize("name", CASES)
 def test_much_damage_is_refused_with_a_message(tmp_path, name):
-    assert outcomes(name, tmp_path, 1500) == {"refused", "read"}
+    assert outcomes(name, tmp_path, 10_000) == {"refused", "read"}

@@ -45,7 +45,8 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 def test_every_picture_and_map_is_shown_with_its_description(page):
     folder, text = page
     images = [i for i in Elements(text).all("img") if i.get("src")]
-    assert len(images) == len(TEXTURES) * len(RIGS) + 4
+    # Four maps, two of them in a range of their own as well.
+    assert len(images) == len(TEXTURES) * len(RIGS) + 4 + 2
     for image in images:
         assert (folder / unquote(image["src"])).is_file()
     descriptions = [i["alt"] for i in images]

@@ -101,6 +101,22 @@ def test_taylor(seed):
     assert first == pytest.approx(2, abs=0.1)
 
 
+def test_springs_couple_the_sheet_and_its_columns():
+    """Raising the sheet and letting the column settle both lower the depth: k n, not -k n."""
+    foundation, state, n = pressed(0.01)
+    contact, step = foundation.contact, 1e-6
+    at = int(np.argmax(contact.per_vertex))
+    pulls = []
+    for sign in (1.0, -1.0):
+        moved = state.copy()
+        moved[at] += sign * step * contact.normal[at]
+        gradient = np.zeros_like(state)
+        contact.value(moved, gradient)
+        pulls.append(settled_part(gradient, n)[at])
+    coupling = (pulls[0] - pulls[1]) / (2 * step)
+    assert coupling == pytest.approx(contact.per_vertex[at], rel=1e-4)
+
+
 def test_elimination_is_exact():
     """With exact blocks the preconditioner inverts the coupled matrix."""
     rng = np.random.default_rng(0)
@@ -111,7 +127,7 @@ def test_elimination_is_exact():
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     B = np.zeros((n, 3 * n))
     for i in range(n):
-        B[i, 3 * i : 3 * i + 3] = -link[i] * normal[i]
+        B[i, 3 * i : 3 * i + 3] = link[i] * normal[i]
     A = np.diag(rng.uniform(5, 9, 3 * n)) + B.T @ np.linalg.solve(columns, B)
     schur = A - B.T @ np.linalg.solve(columns, B)
     factor = SettledFactor(Factor(csc_array(schur)), Factor(csc_array(columns)), link, normal)

@@ -59,10 +59,21 @@ class Studio:
         if shading is not None:
             normals = drawn_surface(shading).mesh.normals
             self.surface = replace(self.surface, mesh=self.surface.mesh._replace(normals=normals))
-        self._smooth = neighbour_mean(solution.cover.faces, len(solution.positions))
-        self._gathering = _gathering(self.surface.coarse)
-        self._bvh = bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
         self._cache: OrderedDict[Hashable, Any] = OrderedDict()
+
+    # Maps need none of these: they are made for the first picture.
+    @functools.cached_property
+    def _smooth(self) -> Callable[[FloatArray], FloatArray]:
+        cover = self.solution.cover
+        return neighbour_mean(cover.faces, len(self.solution.positions))
+
+    @functools.cached_property
+    def _gathering(self) -> surface.Mesh:
+        return _gathering(self.surface.coarse)
+
+    @functools.cached_property
+    def _bvh(self) -> bvh.Bvh:
+        return bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
 
     def render(
         self,

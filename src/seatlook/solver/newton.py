@@ -194,14 +194,22 @@ def line_search(
 
 def factorise(hessian: csc_array) -> tuple[SuperLU, int]:
     """Return the factors of a symmetric matrix and its number of negative pivots."""
-    factor = splu(
+    try:
+        factor = _factors(hessian)
+    except RuntimeError:
+        # Exactly singular: a slack sheet swings without stiffness. Rounding holds it.
+        factor = _factors(_lifted(hessian, _ROUNDING * float(np.abs(hessian.diagonal()).max())))
+    pivots = factor.U.diagonal()
+    return factor, int((pivots < -_ROUNDING * np.abs(pivots).max(initial=0.0)).sum())
+
+
+def _factors(hessian: csc_array) -> SuperLU:
+    return splu(
         hessian,
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    pivots = factor.U.diagonal()
-    return factor, int((pivots < -_ROUNDING * np.abs(pivots).max(initial=0.0)).sum())
 
 
 def _definite(potential: Potential, x: FloatArray, hessian: csc_array, factor: SuperLU) -> SuperLU:

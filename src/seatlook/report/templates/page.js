@@ -135,8 +135,11 @@
   // One range for all maps, or each its own.
   function range() {
     for (const image of all("img[data-alone]")) {
+      const own = get(image.dataset.alone);
       image.dataset.shared ??= image.src;
-      image.src = get("shared").checked ? image.dataset.shared : get(image.dataset.alone).src;
+      image.dataset.sharedAlt ??= image.alt;
+      image.src = get("shared").checked ? image.dataset.shared : own.src;
+      image.alt = get("shared").checked ? image.dataset.sharedAlt : own.alt;
       const said = image.closest("figure").querySelector(".range");
       said.dataset.shared ??= said.textContent;
       said.textContent = get("shared").checked ? said.dataset.shared : said.dataset.alone;
