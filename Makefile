@@ -23,7 +23,8 @@ export NUMBA_CACHE_DIR ?= $(CURDIR)/.numba_cache/$(shell cat src/seatlook/*/kern
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.gl
-	$(BIN)/seatlook demo --out $(OUT)
+	$(BIN)/seatlook demo --out $(OUT) --no-score
+	@echo "how visible its wrinkles are: $(BIN)/seatlook evaluate $(OUT)/scene.toml --out $(OUT) --resume"
 
 test: $(VENV)/.gl $(VENV)/.dev
 	$(PYTEST) -n auto --dist loadfile -m "not validate and not browser and not bench" $(TESTS)
