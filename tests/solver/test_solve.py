@@ -179,8 +179,12 @@ def test_strip_over_a_cylinder_presses_as_a_belt_does():
     belt = 6000 * E * (1 + 2 * E) / (R + phi[top].mean())
     pressure = contact.force[top].sum() / contact.area[top].sum()
     assert pressure == pytest.approx(belt, rel=0.01)
+    # The foam gives way below the crown, which stores work in it and in the belt: the frame holds
+    # the tension of the free ends.
+    free = s.positions[c.faces, 2].max(axis=1) < 0.0
+    E = np.average(s.strain_mid[free, 0, 0], weights=c.rest_area[free])
     assert s.figures["frame/end 1/force_sum"] == pytest.approx(
-        6000 * E * np.sqrt(1 + 2 * E) * width, rel=0.02
+        6000 * E * np.sqrt(1 + 2 * E) * width, rel=0.002
     )
 
 
@@ -191,6 +195,9 @@ def test_sheet_drapes_over_a_sphere():
         foam=foam(*sphere(0.06, 4), **STIFF),
         stages=[model.Stage(name="drop", start=0.0, end=1.0)],
         h=0.0125,
+        bending_warp=5e-5,
+        bending_weft=5e-5,
+        bending_twist=2e-5,
     )
     s = solve(c, strict=True)
     r = np.linalg.norm(s.positions, axis=1)
