@@ -136,10 +136,15 @@ def _shape(mi, studio: Studio, bsdf):
 
 
 class Relief:
-    """Slopes and colour share (h, w, 3) of a relief over a box of pattern coordinates."""
+    """Slopes and colour share (n, n, 3) of a relief that repeats, and its tone over the scene.
 
-    def __init__(self, values: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
-        self.values, self.low, self.high = values.astype(np.float32), low, high
+    ``tile`` [m] is the width of the repeated map; ``tone`` (k, k) multiplies the colour share
+    between pattern coordinates ``-edge`` and ``edge`` [m].
+    """
+
+    def __init__(self, values: np.ndarray, tile: float, tone: np.ndarray, edge: float) -> None:
+        self.values, self.tile = values.astype(np.float32), tile
+        self.tone, self.edge = tone[..., None].astype(np.float32), edge
 
 
 def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C901
@@ -170,10 +175,12 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
             self.m_flags = flags
             self.curves = {k: mi.Float(v.astype(np.float32)) for k, v in curves.items()}
             if relief is not None:
+                linear = {"filter_mode": dr.FilterMode.Linear}
                 self.map = mi.Texture2f(
-                    mi.TensorXf(relief.values),
-                    filter_mode=dr.FilterMode.Linear,
-                    wrap_mode=dr.WrapMode.Clamp,
+                    mi.TensorXf(relief.values), wrap_mode=dr.WrapMode.Repeat, **linear
+                )
+                self.tone = mi.Texture2f(
+                    mi.TensorXf(relief.tone), wrap_mode=dr.WrapMode.Clamp, **linear
                 )
 
         def curve(self, name, mu):
@@ -188,11 +195,8 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
             n, share = _towards(mi.Vector3f(0, 0, 1), si.wi), mi.Float(1)
             if relief is not None:
                 t, s = _axes(n)
-                size = relief.high - relief.low
-                uv = mi.Point2f(
-                    (si.uv.x - relief.low[0]) / size[0], (si.uv.y - relief.low[1]) / size[1]
-                )
-                su, sv, share = self.map.eval(uv)
+                su, sv, share = self.map.eval(mi.Point2f(si.uv / relief.tile))
+                share *= self.tone.eval(mi.Point2f(0.5 + 0.5 * si.uv / relief.edge))[0]
                 n = _towards(dr.normalize(n - su * t - sv * s), si.wi)
             t, s = _axes(n)
             return mi.Frame3f(t, s, n), share

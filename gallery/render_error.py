@@ -17,8 +17,8 @@ from path_tracer import Relief
 from pbr_scenes import sheet
 from seatlook.io.material import read_material
 from seatlook.model import Appearance, Camera, Rig, Solution, bulb, named_view, sun
-from seatlook.pbr.exposure import srgb_encode
-from seatlook.pbr.kernels.grain import grain
+from seatlook.model.colour import srgb_encode
+from seatlook.pbr.kernels.grain import stroke
 from seatlook.pbr.rig import LUMINANCE, white_of
 from seatlook.pbr.studio import pack_materials
 from seatlook.pbr.texture import load_textures
@@ -60,25 +60,26 @@ def look(name: str, *, textured: bool) -> Appearance:
     return appearance if textured else replace(appearance, texture="none", texture_depth=0.0)
 
 
-def relief_of(appearance: Appearance, texel: float = 1e-4) -> Relief | None:
-    """Finest level of an appearance's relief over the scene, for the path tracer to resolve."""
+def relief_of(appearance: Appearance) -> Relief | None:
+    """Finest level of an appearance's relief, for the path tracer to resolve."""
     if appearance.texture == "none":
         return None
-    n = round(2 * _EDGE / texel)
-    u = -_EDGE + texel * (np.arange(n) + 0.5)
     material = pack_materials([appearance])[0]
     textures = load_textures(int(material["texture"]))
-    values = np.empty((n, n, 3))
-    _bake(textures, material, u, values)
-    return Relief(values, np.full(2, -_EDGE), np.full(2, _EDGE))
+    n = textures.size
+    finest = textures.texels[int(material["texture"]), : n * n].reshape(n, n, 4)
+    steep = appearance.texture_depth / appearance.texture_scale
+    values = finest[..., [0, 1, 3]] * [steep, steep, 1.0]
+    tone = np.empty((200, 200))
+    _tones(material, _EDGE * ((np.arange(200) + 0.5) / 100 - 1), tone)
+    return Relief(values, textures.cells * appearance.texture_scale, tone, _EDGE)
 
 
 @njit
-def _bake(textures, material, u, values):
+def _tones(material, u, tone):
     for j in range(len(u)):
         for i in range(len(u)):
-            su, sv, _, share = grain(textures, material, 1.0, u[i], u[j], 1e-9)
-            values[j, i, 0], values[j, i, 1], values[j, i, 2] = su, sv, share
+            tone[j, i] = stroke(material, u[i], u[j])
 
 
 @dataclass(frozen=True)

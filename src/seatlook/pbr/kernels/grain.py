@@ -74,6 +74,20 @@ def _filtered(t, textures, material, u, v, width):
 
 
 @leaf()
+def stroke(material, u, v):
+    """Share of the colour left by marks of the hand: suede's nap lies this way or that.
+
+    They change the tone and not the normal: a slope over a few centimetres would be taken for a
+    wrinkle.
+    """
+    if material.texture != SUEDE:
+        return 1.0
+    bend = 0.4 * smooth(u / 0.06, v / 0.06, 3)
+    mark = 4.0 * smooth(u / 0.05 + bend, v / 0.03 + bend, 1)
+    return 1.0 + _STROKE * (mark / np.sqrt(1.0 + mark * mark) - 1.0)
+
+
+@leaf()
 def grain(textures, material, roughness, u, v, width):
     """Slopes, roughness and colour share of a material's relief for a sample ``width`` [m] wide.
 
@@ -85,12 +99,7 @@ def grain(textures, material, roughness, u, v, width):
     steep = material.texture_depth / material.texture_scale
     alpha = roughness**2
     alpha = np.sqrt(alpha * alpha + 2.0 * steep * steep * variance)
-    if material.texture == SUEDE:
-        # Marks of the hand: the nap lies this way or that over a few centimetres. They change the
-        # tone and not the normal: a slope over such a length would be taken for a wrinkle.
-        bend = 0.4 * smooth(u / 0.06, v / 0.06, 3)
-        mark = 4.0 * smooth(u / 0.05 + bend, v / 0.03 + bend, 1)
-        share *= 1.0 + _STROKE * (mark / np.sqrt(1.0 + mark * mark) - 1.0)
+    share *= stroke(material, u, v)
     return steep * su, steep * sv, min(1.0, np.sqrt(alpha)), share
 
 
