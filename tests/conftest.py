@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
 from pathlib import Path
 
 import pytest
 
 # Run once by hand, with packages that the project does not need.
 collect_ignore = ["sensory/record_cvvdp.py"]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Keep what is cached between runs out of the user's folder, and his out of the tests."""
+    folder = tempfile.TemporaryDirectory(prefix="seatlook-")
+    os.environ["SEATLOOK_CACHE_DIR"] = folder.name
+    config.add_cleanup(folder.cleanup)
 
 
 @pytest.fixture(scope="session")

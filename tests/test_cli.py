@@ -118,6 +118,9 @@ def test_doctor_names_the_library_it_found(tmp_path):
     assert found["cores"] == os.cpu_count()
     assert found["kernel threads"] >= 1
     assert found["kernel cache kept"] is True
+    assert found["field cache kept"] is True
+    assert found["field cache"] == str(Path(os.environ["SEATLOOK_CACHE_DIR"]) / "fields")
+    assert found["fields kept"].endswith(" MB")
     assert done.stderr == "nothing to do: this machine can solve and draw\n"
     quiet = seatlook("doctor", "--json", "--quiet", cwd=tmp_path)
     assert quiet.stderr == ""
@@ -131,6 +134,9 @@ def test_doctor_says_what_to_set(tmp_path):
     assert f"more threads (999) than cores: set OMP_NUM_THREADS={os.cpu_count()} or less" in (
         done.stderr
     )
+    (tmp_path / "file").write_text("in the way")
+    shut = seatlook("doctor", cwd=tmp_path, SEATLOOK_CACHE_DIR=str(tmp_path / "file"))
+    assert f"{tmp_path / 'file' / 'fields'} cannot be written" in shut.stderr
 
 
 HIDDEN = """

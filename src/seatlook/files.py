@@ -1,4 +1,7 @@
-"""Writing files so that an interrupted run leaves the old file or the new one, never half."""
+"""Writing files so that an interrupted run leaves the old file or the new one, never half.
+
+And where what can be made again is kept between runs.
+"""
 
 from __future__ import annotations
 
@@ -45,3 +48,21 @@ def write_bytes(path: Path, content: bytes) -> None:
 def write_text(path: Path, content: str) -> None:
     """Write UTF-8 ``content`` to ``path`` in one step."""
     write_bytes(path, content.encode())
+
+
+def cache_folder() -> Path | None:
+    """Folder of what is kept between runs and can be made again; None where there is no home.
+
+    ``SEATLOOK_CACHE_DIR``, else ``seatlook`` below ``XDG_CACHE_HOME`` or ``~/.cache``.
+    """
+    named = os.environ.get("SEATLOOK_CACHE_DIR", "")
+    if named:
+        return Path(named)
+    shared = Path(os.environ.get("XDG_CACHE_HOME", ""))
+    # The XDG specification has relative paths ignored.
+    if shared.is_absolute():
+        return shared / "seatlook"
+    try:
+        return Path.home() / ".cache" / "seatlook"
+    except RuntimeError:
+        return None

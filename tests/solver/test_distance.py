@@ -132,7 +132,7 @@ def test_a_field_is_kept_under_the_content_of_its_surface():
     assert moved is not first
     assert distance_field(v, f, spacing=0.012) is not first
     assert distance_field(v * 1.001, f, spacing=0.01) is moved
-    # Two are kept: the first has gone, and comes back equal.
+    # Two are kept in memory: the first comes back from disk, equal.
     again = distance_field(v, f, spacing=0.01)
     assert again is not first
     assert again.coefficients.tobytes() == first.coefficients.tobytes()

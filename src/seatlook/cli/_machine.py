@@ -70,6 +70,7 @@ def doctor(*, json: Json = False) -> int:
             ("cores", os.cpu_count()),
             *_threads(advice),
             *_cache(advice),
+            *_fields(advice),
             *drawn,
         ],
         json=json,
@@ -112,8 +113,7 @@ def _cache(advice: list[str]) -> list[tuple[str, object]]:
 
     named = os.environ.get("NUMBA_CACHE_DIR")
     folder = Path(named) if named else Path(seatlook.__file__).parent
-    above = next(p for p in (folder, *folder.parents) if p.exists())
-    kept = os.access(above, os.W_OK)
+    kept = _writable(folder)
     if not kept:
         advice.append(
             f"{folder} cannot be written, so kernels are compiled again in every run (about a "
@@ -125,3 +125,30 @@ def _cache(advice: list[str]) -> list[tuple[str, object]]:
         ("kernel cache kept", kept),
         ("kernels kept", len(files)),
     ]
+
+
+def _fields(advice: list[str]) -> list[tuple[str, object]]:
+    """Where distance fields of foams are kept, how many, and whether they can be."""
+    from seatlook.solver.kept_fields import folder
+
+    base = folder()
+    kept = base is not None and _writable(base)
+    if not kept:
+        advice.append(
+            f"{base or 'the home folder'} cannot be written, so the distance field of a foam is "
+            "made again in every run (a second or two): set SEATLOOK_CACHE_DIR to a folder of "
+            "your own"
+        )
+    files = list(base.glob("*.field")) if base is not None and base.exists() else []
+    size = sum(path.stat().st_size for path in files)
+    return [
+        ("field cache", str(base)),
+        ("field cache kept", kept),
+        ("fields kept", f"{len(files)}, {size / 1e6:.0f} MB"),
+    ]
+
+
+def _writable(folder: Path) -> bool:
+    """Whether files can be written there, or the folder be made."""
+    above = next(p for p in (folder, *folder.parents) if p.exists())
+    return above.is_dir() and os.access(above, os.W_OK)

@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from seatlook.errors import InputError
 from seatlook.model import FloatArray, IntArray
+from seatlook.solver import kept_fields
 from seatlook.solver.kernels import distance as kernel
 
 _BAND = 2.0  # cells around the surface whose distance is searched over all faces
@@ -52,8 +53,10 @@ def distance_field(
     """Signed distance of a closed surface with outward normals.
 
     Exact point-triangle distances near the surface, the nearest face carried on beyond, sign from
-    the winding number along vertical lines, then cubic B-spline interpolation, which is C2. The
-    last two fields are kept under the content of their surfaces: asked again, they cost nothing.
+    the winding number along vertical lines, then cubic B-spline interpolation, which is C2.
+
+    Fields are kept under the content of their surfaces: the last two in memory, more of them on
+    disk (``kept_fields``), from where one of 1.1 million nodes is read in 20 ms.
 
     Parameters
     ----------
@@ -68,7 +71,7 @@ def distance_field(
     """
     key = _digest(vertices, faces, spacing, margin)
     if key not in _fields:
-        _fields[key] = _built(vertices, faces, spacing, margin)
+        _fields[key] = _read(key) or _written(key, _built(vertices, faces, spacing, margin))
         if len(_fields) > _KEPT:
             _fields.popitem(last=False)
     _fields.move_to_end(key)
@@ -79,6 +82,23 @@ def _digest(vertices: FloatArray, faces: IntArray, spacing: float, margin: float
     parts = (vertices.astype(float), faces.astype(np.int64), np.array([spacing, margin]))
     content = (f"{part.shape}".encode() + part.tobytes() for part in parts)
     return hashlib.sha256(b"".join(content)).hexdigest()
+
+
+def _read(key: str) -> DistanceField | None:
+    found = kept_fields.read(key)
+    if found is None:
+        return None
+    return DistanceField(found["coefficients"], found["grid"], float(found["least_extent"]))
+
+
+def _written(key: str, field: DistanceField) -> DistanceField:
+    kept_fields.write(
+        key,
+        coefficients=field.coefficients,
+        grid=field.grid,
+        least_extent=np.array(field.least_extent),
+    )
+    return field
 
 
 def _built(vertices: FloatArray, faces: IntArray, spacing: float, margin: float) -> DistanceField:
