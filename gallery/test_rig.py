@@ -30,6 +30,10 @@ from elastica import hanging_tip  # noqa: E402
 from seatlook.model import Curve, Fabric  # noqa: E402
 from seatlook.solver import solve_sheet  # noqa: E402
 
+BACK = {
+    "warp_unloading": Curve(strain=[0.0, 0.01, 0.03], stiffness=[1500.0, 6000.0, 12000.0]),
+    "weft_unloading": Curve(strain=[0.0, 0.02, 0.04], stiffness=[900.0, 2500.0, 6000.0]),
+}
 Row = tuple[str, float, float, float]  # test, abscissa, input, solver
 
 
@@ -39,6 +43,15 @@ def law(curve: Curve, strain: float) -> float:
     return float(np.trapezoid(np.interp(fine, curve.strain, curve.stiffness), fine))
 
 
+def strain_at(curve: Curve, tension: float) -> float:
+    """Green strain at which a curve reaches a tension."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if law(curve, middle) < tension else (low, middle)
+    return low
+
+
 def square(h: float = 0.1) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Unstructured unit square (m), flat."""
     X, T = meshes.rectangle("uns", 1.0, 1.0, h)
@@ -46,24 +59,29 @@ def square(h: float = 0.1) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def tension(axis: int) -> list[Row]:
-    """Pull a strip between clamps that let it contract; force per width over stretch."""
-    fabric, rows = plain(), []
+    """Pull a strip between clamps that let it contract, and let it back; force over stretch."""
+    fabric, rows = plain(**BACK), []
     X, T, flat = square()
     low, high = X[:, axis] < 1e-9, X[:, axis] > 1 - 1e-9
     fixed = np.zeros((len(X), 3), dtype=bool)
     fixed[:, 2] = True
     fixed[low | high, axis] = True
     fixed[np.flatnonzero(low)[0], 1 - axis] = True
-    for stretch in np.linspace(1.01, 1.08, 8):
+    name = ("warp", "weft")[axis]
+    out, back = getattr(fabric, name), getattr(fabric, f"{name}_unloading")
+    x, peaks, peak = None, None, 0.5 * (1.08**2 - 1.0)
+    start = strain_at(back, law(out, peak))
+    for stretch in (*np.linspace(1.01, 1.08, 8), *np.linspace(1.074, 1.05, 5)):
         target = flat.copy()
         target[:, axis] *= stretch
-        solved = solve_sheet(X, T, fabric, fixed=fixed, prescribed=target, tolerance=1e-8,
-                             strict=True)  # fmt: skip
+        solved = solve_sheet(X, T, fabric, positions=x, fixed=fixed, prescribed=target, peaks=peaks,
+                             tolerance=1e-8, strict=True)  # fmt: skip
+        came_back = x is not None and x[high, axis][0] > stretch
+        x, peaks = solved.positions, solved.peaks
         force = solved.reactions[high, axis].sum()
         E = 0.5 * (stretch**2 - 1.0)
-        curve = fabric.warp if axis == 0 else fabric.weft
-        name = ("warp", "weft")[axis]
-        rows.append((f"strip tension, {name}", E, law(curve, E), force / stretch))
+        given = law(back, E - peak + start) if came_back else law(out, E)
+        rows.append((f"strip tension, {name}", E, given, force / stretch))
     return rows
 
 
@@ -133,11 +151,11 @@ def slack(curve: Curve, strain: float) -> float:
     return law(curve, strain) if strain > 0.0 else float(curve.stiffness[0]) * strain
 
 
-def plain() -> Fabric:
+def plain(**change: object) -> Fabric:
     """The tests' woven fabric, uncoupled and as stiff in compression."""
     woven = fabrics.woven(compression_ratio=1.0)
     return Fabric(**{name: getattr(woven, name) for name in Fabric.__dataclass_fields__}
-                  | {"poisson": 0.0})  # fmt: skip
+                  | {"poisson": 0.0} | change)  # fmt: skip
 
 
 def bending() -> list[Row]:

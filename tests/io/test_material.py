@@ -183,3 +183,26 @@ def test_measured_colour_of_the_lab(tmp_path):
         file.write_text(text.replace(albedo, f'albedo = "{bad}"'))
         with pytest.raises(InputError, match=r"appearance\.albedo: got"):
             read_material(file)
+
+
+BACK = "warp_unloading_n_per_m = {}\nweft_n_per_m"
+
+
+def test_unloading_curves_are_read_and_may_be_left_out(write):
+    curve = "{ strain = [0, 0.1], stiffness = [90000, 99000] }"
+    text = LEATHER.replace("weft_n_per_m", BACK.format(curve), 1)
+    fabric = read_material(write("x.toml", text)).fabric
+    assert fabric.warp_unloading.stiffness.tolist() == [90000.0, 99000.0]
+    assert fabric.weft_unloading is None
+
+
+def test_unloading_below_loading_is_named(write, problems):
+    (problem,) = problems(
+        read_material, write("x.toml", LEATHER.replace("weft_n_per_m", BACK.format("100"), 1))
+    )
+    assert problem.startswith("x.toml:3: fabric.Fabric.warp_unloading: got ")
+    assert "expected at least the" in problem
+    (problem,) = problems(
+        read_material, write("y.toml", LEATHER.replace("weft_n_per_m", BACK.format("-1"), 1))
+    )
+    assert "fabric.warp_unloading_n_per_m: got -1, expected a number above 0" in problem

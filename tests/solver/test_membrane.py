@@ -10,7 +10,7 @@ from seatlook.errors import InputError
 from seatlook.model import Curve, Fabric
 from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.kernels import membrane as kernels
-from seatlook.solver.membrane import law_tables
+from seatlook.solver.law import law_tables
 from waves import false_bending
 
 

@@ -47,6 +47,8 @@ class _Colour:
     default: None = None
 
     def read(self, document: Document, key: Key, value: Any) -> Any:
+    "warp_unloading_n_per_m": _StiffnessCurve(),
+    "weft_unloading_n_per_m": _StiffnessCurve(),
         if not isinstance(value, str):
             return Array(shape=(3,), low=0.0, high=1.0).read(document, key, value)
         if re.fullmatch(r"#[0-9a-fA-F]{6}", value):

@@ -281,3 +281,8 @@ class WrinkleMap:
         m = len(self.c)
         for name in ("c", "w1", "w2", "r_stretch", "w_stretch", "w_compression"):
             floats(self, name, m)
+    strain_peak : (m, 2) float64 [1]
+        largest strains so far along warp and weft, -inf = none, of fabrics that unload another way
+    strain_peak: FloatArray | None = None
+        if self.strain_peak is not None:
+            floats(self, "strain_peak", m, 2, finite=False)

@@ -45,6 +45,19 @@ class Curve:
         return cls(strain=np.zeros(1), stiffness=np.array([stiffness]))
 
 
+    def tension(self, strain: FloatArray) -> FloatArray:
+        """Return the tension [N/m] at Green strains of 0 and more, in closed form.
+
+        Examples
+        --------
+        >>> Curve(strain=[0.0, 0.1], stiffness=[100.0, 300.0]).tension(np.array([0.1, 0.2]))
+        array([20., 50.])
+        """
+        knots = np.append(self.strain, np.inf)
+        reach = np.clip(np.asarray(strain)[..., None] - knots[:-1], 0.0, np.diff(knots))
+        rise = np.append(np.diff(self.stiffness) / np.diff(self.strain), 0.0)
+        return np.asarray((reach * (self.stiffness + 0.5 * rise * reach)).sum(axis=-1))
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fabric:
     """Mechanics of a sheet; bending does not follow from the membrane but stands for itself.
@@ -57,6 +70,9 @@ class Fabric:
     shear : Curve                  over the shear angle 2 E12
     poisson : float                contraction in weft per stretch along warp, may exceed 0.5
     compression_ratio : float      compressive stiffness over the first stiffness of the curve
+    warp_unloading, weft_unloading : Curve, optional
+        tension on the way back, over the strain from where it is gone; the same as on the way out
+        if not given, and never below it
     bending_warp, bending_weft, bending_twist : float [N m]
         D11 (curvature along warp), D22 and D66 of ``m = D kappa`` with kappa = (k11, k22, 2 k12)
     bending_poisson : float        D12 = bending_poisson * D22
@@ -68,6 +84,8 @@ class Fabric:
     weft: Curve
     shear: Curve
     poisson: float = 0.0
+    warp_unloading: Curve | None = None
+    weft_unloading: Curve | None = None
     compression_ratio: float = 1.0
     bending_warp: float
     bending_weft: float
@@ -78,6 +96,8 @@ class Fabric:
         positive(self, "thickness", "density", "bending_warp", "bending_weft", "bending_twist")
         in_range(self, "compression_ratio", 1e-6, 1.0)
         for name, matrix in (("membrane", self.membrane_matrix), ("bending", self.bending_matrix)):
+        for name in ("warp", "weft"):
+            _check_unloading(name, getattr(self, name), getattr(self, f"{name}_unloading"))
             lowest = float(np.linalg.eigvalsh(matrix)[0])
             if not lowest > 0:
                 raise InputError.single(
@@ -108,6 +128,34 @@ class Fabric:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+def _check_unloading(name: str, loading: Curve, unloading: Curve | None) -> None:
+    """Refuse a way back that is softer than the way out: it would give more than was put in."""
+    if unloading is None:
+        return
+    knots = np.union1d(loading.strain, unloading.strain)
+    # Between knots stiffness is linear, so tensions are closest at a knot or where stiffness meets.
+    at = np.interp(knots, unloading.strain, unloading.stiffness)
+    lead = at - np.interp(knots, loading.strain, loading.stiffness)
+    meet = np.flatnonzero(lead[:-1] * lead[1:] < 0.0)
+    share = lead[meet] / (lead[meet] - lead[meet + 1])
+    strain = np.concatenate([knots, knots[meet] + share * np.diff(knots)[meet]])
+    back, out = unloading.tension(strain), loading.tension(strain)
+    worst = int(np.argmin(back - out))
+    if back[worst] < out[worst] * (1.0 - 1e-9):
+        raise InputError.single(
+            f"Fabric.{name}_unloading",
+            got=f"{back[worst]:.4g} N/m at strain {strain[worst]:.4g}",
+            expected=f"at least the {out[worst]:.4g} N/m of {name}",
+            hint="strain counts from where the tension is gone, so the way back is the steeper one",
+        )
+    if lead[-1] < 0.0:
+        raise InputError.single(
+            f"Fabric.{name}_unloading",
+            got=f"a last stiffness of {unloading.stiffness[-1]:.4g} N/m",
+            expected=f"at least the {loading.stiffness[-1]:.4g} N/m of {name}",
+        )
+
+
 class Appearance:
     """How a surface answers light, plus the relief of its grain.
 

@@ -22,6 +22,8 @@ _FILE_KEYS: Mapping[str, tuple[str, float]] = {
     "warp": ("warp_n_per_m", 1.0),
     "weft": ("weft_n_per_m", 1.0),
     "shear": ("shear_n_per_m", 1.0),
+    "warp_unloading": ("warp_unloading_n_per_m", 1.0),
+    "weft_unloading": ("weft_unloading_n_per_m", 1.0),
     "bending_warp": ("bending_warp_n_m", 1.0),
     "bending_weft": ("bending_weft_n_m", 1.0),
     "bending_twist": ("bending_twist_n_m", 1.0),

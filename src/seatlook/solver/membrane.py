@@ -8,12 +8,13 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csc_array, csr_array, eye_array, kron
 
-from seatlook.errors import InputError
-from seatlook.model import Curve, Fabric, FloatArray, IntArray
+from seatlook.model import Fabric, FloatArray, IntArray
 from seatlook.solver.curvature import Curvature
 from seatlook.solver.edgeslope import Edges, tangent_matrix
 from seatlook.solver.kernels import membrane as kernels
 from seatlook.solver.kernels.curvature import along_edges
+from seatlook.solver.law import law_tables, typical_stiffness
+from seatlook.solver.unloading import Unloading
 
 
 class Membrane:
@@ -28,7 +29,8 @@ class Membrane:
     piecewise linear in Green strain, so stress is smooth and energy a cubic. In compression it
     falls to ``compression_ratio`` times its first value over 2e-3 of strain; the coupling
     ``C12 ((1 - c) p(E11) p(E22) + c E11 E22)``, p = e^2 / (e + 2e-3) in tension and 0 else, keeps
-    the same share c, so that psi stays convex and c = 1 is the linear orthotropic law.
+    the same share c, so that psi stays convex and c = 1 is the linear orthotropic law. Fabrics with
+    unloading curves have a history, see ``Unloading``; ``wear`` adds to it between steps.
 
     Parameters
     ----------
@@ -57,11 +59,31 @@ class Membrane:
         self._constants = np.array(
             [[f.poisson * f.weft.stiffness[0], f.compression_ratio] for f in fabrics]
         )
+        # None costs nothing: most fabrics go back the way they came.
+        self._unloading = None
+        if any(f.warp_unloading or f.weft_unloading for f in fabrics):
+            self._unloading = Unloading(fabric, fabrics, self._law)
         self._laplacian = self._plane_laplacian(count, fabrics)
         self._bow = np.empty((len(edges.ends), 3))
         self._edge_strain = np.empty(len(edges.ends))
         self._pull = np.empty(len(edges.ends))
         self._E = np.empty((len(area), 3))
+
+    @property
+    def peaks(self) -> FloatArray | None:
+        """Largest warp and weft strains so far, (m, 2), -inf if never stretched; None if unkept."""
+        return None if self._unloading is None else self._unloading.peaks
+
+    def wear(self, x: FloatArray) -> None:
+        """Take the strains at ``x`` into the history; energy and forces there do not change."""
+        if self._unloading is not None:
+            self._deform(x)
+            self._unloading.wear(self._E)
+
+    def remember(self, peaks: FloatArray) -> None:
+        """Take over the ``peaks`` of an earlier state of the same mesh."""
+        if self._unloading is not None:
+            self._unloading.wear(peaks)
 
     def strain(self, x: FloatArray) -> FloatArray:
         """Return the Green strain (E11, E22, 2 E12) of every triangle, (m, 3) [1]."""
@@ -71,7 +93,7 @@ class Membrane:
     def stress(self, x: FloatArray) -> FloatArray:
         """Return the second Piola-Kirchhoff stress (S11, S22, S12), (m, 3) [N/m]."""
         self._deform(x)
-        return np.asarray(kernels.laws(self._E, self._fabric, *self._law, self._constants))
+        return self._stress()
 
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N] to ``gradient``."""
@@ -86,6 +108,10 @@ class Membrane:
             self._constants,
             self._pull,
         )
+        if self._unloading is not None:
+            energy += self._unloading.tensions(
+                self._E, self._edges.of_face, self._natural, self._area, self._pull
+            )
         kernels.forces(
             x, self._pull, self._edges.ends, self._edges.length, *self._rows, self._bow, gradient
         )
@@ -105,6 +131,8 @@ class Membrane:
             self._constants,
             material,
         )
+        if self._unloading is not None:
+            self._unloading.stiffness(self._E, self._natural, self._area, material)
         pairs = (np.repeat(of_face, 3, axis=1).ravel(), np.tile(of_face, (1, 3)).ravel())
         count = len(self._edges.ends)
         coupled = csr_array((material.ravel(), pairs), shape=(count, count))
@@ -137,7 +165,7 @@ class Membrane:
     def _geometric(self, definite: bool) -> csr_array:
         """Stiffness (n, n) of the stress at hand; chords and arcs of edges pull like strings."""
         edges, (chord, arc) = self._edges, self._split
-        stress = kernels.laws(self._E, self._fabric, *self._law, self._constants)
+        stress = self._stress()
         if definite:
             kernels.clamp(stress)
         share = self._area[:, None] * np.einsum("tck,tc->tk", self._natural, stress)
@@ -145,6 +173,13 @@ class Membrane:
         bend = edges.length**2 / 12.0 * (np.maximum(pull, 0.0) if definite else pull)
         strings = chord.T @ chord.multiply(pull[:, None])
         return csr_array(strings + arc.T @ arc.multiply(bend[:, None]))
+
+    def _stress(self) -> FloatArray:
+        """Stress (m, 3) [N/m] of the last strains."""
+        S = np.asarray(kernels.laws(self._E, self._fabric, *self._law, self._constants))
+        if self._unloading is not None:
+            self._unloading.stress(self._E, S)
+        return S
 
     def _deform(self, x: FloatArray) -> None:
         edges = self._edges
@@ -204,61 +239,3 @@ def _common(first: csr_array, second: csr_array) -> tuple[csr_array, csr_array]:
         filled.data[where.data.astype(np.int64) - 1] = sorted_matrix.data
         spread.append(filled)
     return spread[0], spread[1]
-
-
-def law_tables(fabrics: Sequence[Fabric]) -> tuple[FloatArray, IntArray]:
-    """Return knots (f, 3, k, 5) of warp, weft and shear of every fabric, and their counts (f, 3).
-
-    Columns: strain, stiffness, stress, energy at the knot, and slope of the stiffness after it.
-    """
-    curves = [
-        [
-            _with_slack(f.warp, f.compression_ratio),
-            _with_slack(f.weft, f.compression_ratio),
-            (f.shear.strain, f.shear.stiffness),
-        ]
-        for f in fabrics
-    ]
-    longest = max(len(strain) for row in curves for strain, _ in row)
-    tables = np.zeros((len(curves), 3, longest, 5))
-    counts = np.empty((len(curves), 3), dtype=np.int64)
-    for i, row in enumerate(curves):
-        _check(fabrics[i])
-        for j, (strain, stiffness) in enumerate(row):
-            counts[i, j] = len(strain)
-            tables[i, j, : len(strain)] = _integrate(strain, stiffness)
-    return tables, counts
-
-
-def typical_stiffness(curve: Curve) -> float:
-    """Stiffness [N/m] between the toe and the middle knot of a curve."""
-    return float(0.5 * (curve.stiffness[0] + curve.stiffness[len(curve.stiffness) // 2]))
-
-
-def _with_slack(curve: Curve, ratio: float) -> tuple[FloatArray, FloatArray]:
-    strain = np.concatenate([[-kernels.BLEND], curve.strain])
-    return strain, np.concatenate([[ratio * curve.stiffness[0]], curve.stiffness])
-
-
-def _integrate(strain: FloatArray, stiffness: FloatArray) -> FloatArray:
-    """Stress and energy at the knots, both zero at zero strain."""
-    step, mean = np.diff(strain), 0.5 * (stiffness[1:] + stiffness[:-1])
-    stress = np.concatenate([[0.0], np.cumsum(mean * step)])
-    stress -= np.interp(0.0, strain, stress)
-    slope = np.append(np.diff(stiffness) / step, 0.0)
-    lift = stress[:-1] * step + 0.5 * stiffness[:-1] * step**2 + slope[:-1] * step**3 / 6.0
-    energy = np.concatenate([[0.0], np.cumsum(lift)])
-    energy -= energy[np.flatnonzero(strain == 0.0)[0]]
-    return np.stack([strain, stiffness, stress, energy, slope], axis=1)
-
-
-def _check(fabric: Fabric) -> None:
-    """Refuse curves that soften so far that the coupling makes the law lose its convexity."""
-    coupling = fabric.poisson * fabric.weft.stiffness[0]
-    lowest = fabric.warp.stiffness.min() * fabric.weft.stiffness.min()
-    if coupling**2 >= lowest:
-        raise InputError.single(
-            "Fabric.poisson",
-            got=f"coupling {coupling:.4g} N/m",
-            expected=f"below {np.sqrt(lowest):.4g} N/m, where the curves are softest",
-        )

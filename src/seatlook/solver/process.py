@@ -130,6 +130,8 @@ class Process:
                 self.ties.multiplier[tie.rows] = start.multipliers[tie.name]
         if self.foundation is not None:
             np.copyto(self.foundation.friction.anchor, start.friction_anchor)
+        if start.strain_peak is not None:
+            self.sheet.membrane.remember(start.strain_peak)
 
     def step(self, step: Step, *, refactor: bool) -> Record:
         """Advance by one time step; ``refactor`` renews what is made from the stiffness."""
@@ -266,6 +268,7 @@ class Process:
         return record
 
     def _lag(self) -> None:
+        self.sheet.membrane.wear(self.x)
         if self.foundation is not None:
             self.foundation.lag(self.state)
 

@@ -32,6 +32,8 @@ class SheetSolution:
     converged : bool            residual within the tolerance, and stable
     residual : float [1]        largest force out of balance over the mean elastic nodal force
     energy : (k,) float64 [J]   potential after every accepted step of the last load step
+    peaks : (m, 2) float64 [1]  largest warp and weft strains so far, None if the fabric unloads the
+        way it was loaded
     """
 
     positions: FloatArray
@@ -43,6 +45,7 @@ class SheetSolution:
     iterations: int
     kicks: int
     energy: FloatArray
+    peaks: FloatArray | None
 
 
 class SheetError(SolverError):
@@ -66,6 +69,7 @@ def solve_sheet(
     pressure: float = 0.0,
     gravity: Sequence[float] = (0.0, 0.0, 0.0),
     supports: Sequence[Energy] = (),
+    peaks: FloatArray | None = None,
     steps: int = 1,
     method: MethodName | Explicit = "newton",
     tolerance: float = 1e-3,
@@ -85,7 +89,9 @@ def solve_sheet(
     pressure : float [Pa]            along the face normals; needs a rim that is held all round
     gravity : (3,) [m/s2]            acts on the fabric's mass
     supports : further energies, such as a foundation
-    steps : loads and prescribed movements are applied in this many equal steps
+    peaks : (m, 2) float64 [1]       of an earlier solution, where the fabric has unloading curves
+    steps : loads and prescribed movements are applied in this many equal steps; strains count as
+        history only at the end of each
     method : "newton" (with a softened membrane first where the sheet is thin), "lbfgs" with a
         prefactored matrix, or "explicit" (damped, with masses that make all waves equally slow;
         ``Explicit(time_step=...)`` moves in real time with the sheet's own mass).
@@ -121,6 +127,8 @@ def solve_sheet(
     held = _held(len(rest), fixed, clamped)
     panel = np.zeros(len(faces), dtype=np.int64)
     sheet = ElasticSheet(rest, faces, panel, [fabric], clamped=clamped, positions=start)
+    if peaks is not None:
+        sheet.membrane.remember(peaks)
     target = start if prescribed is None else np.where(held, prescribed, start)
     force = np.outer(sheet.mass, gravity)
     if loads is not None:
@@ -144,6 +152,7 @@ def solve_sheet(
             found = Equilibrium(x, np.inf, np.zeros(0), 0, -1, 0)
             raise SheetError(str(error), _report(sheet, found, potential, tolerance)) from error
         x = found.x
+        sheet.membrane.wear(x)
     solution = _report(sheet, found, potential, tolerance)
     if strict and not solution.converged:
         raise SheetError(solution.reason, solution)
@@ -212,4 +221,5 @@ def _report(
         iterations=found.iterations,
         kicks=found.kicks,
         energy=found.energy,
+        peaks=sheet.membrane.peaks,
     )

@@ -186,6 +186,7 @@ class _Run:
             ),
             forces=MappingProxyType(ties.forces(process.x)),
             friction_anchor=free if foundation is None else foundation.friction.anchor,
+            strain_peak=process.sheet.membrane.peaks,
             stage=stage,
             status="not converged" if why else "converged",
             reason="; ".join(why),
