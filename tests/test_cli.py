@@ -210,18 +210,17 @@ def test_stages_are_kept_and_gone_on_from(demo_scene, tmp_path, capsys):
     code = run([*words, str(tmp_path / "a.npz"), "--stages"])
     folder = tmp_path / "a.stages"
     kept = sorted(p.name for p in folder.glob("*.npz"))
-    # Hooks are pulled while the cover is: one snapshot for both.
-    assert kept == ["1-sew.npz", "3-cover.npz", "4-settle.npz"]
-    assert "stage: sew\nstage: cover\nstage: settle\n" in capsys.readouterr().err
+    assert kept == ["1-sew.npz", "2-hook-and-cover.npz", "3-settle.npz"]
+    assert "stage: sew\nstage: hook and cover\nstage: settle\n" in capsys.readouterr().err
     whole = io.read_result(tmp_path / "a.npz")
-    for option in (["--from", "cover"], ["--resume"]):
+    for option in (["--from", "hook and cover"], ["--resume"]):
         assert run([*words, str(tmp_path / "a.npz"), *option]) == code
         assert "stage: sew" not in capsys.readouterr().err
         again = io.read_result(tmp_path / "a.npz")
         assert again.positions.tobytes() == whole.positions.tobytes()
         assert again.figures["steps"] == whole.figures["steps"]
-    assert run([*words, str(tmp_path / "a.npz"), "--from", "covr"]) == 2
-    assert "(did you mean 'cover'?)" in capsys.readouterr().err
+    assert run([*words, str(tmp_path / "a.npz"), "--from", "setle"]) == 2
+    assert "(did you mean 'settle'?)" in capsys.readouterr().err
 
 
 def test_flatten_writes_a_pattern_and_its_strains(demo_scene, tmp_path, capsys):

@@ -74,6 +74,35 @@ def test_refused_with_its_line(load, problems, changes, start, message):
     assert got.startswith(f"scene.toml:{line_of(start)}: {message}"), got
 
 
+def test_ramps_groups_and_seams_of_stages_are_read(load):
+    scene = load(("end_s = 0.2", 'end_s = 0.2\nseams = "front"'))
+    sew, hook, cover = scene.stages
+    assert (sew.ramp, sew.unit, sew.seams) == ("linear", "sew", ("front",))
+    assert (hook.ramp, hook.unit, cover.ramp, cover.unit) == ("smooth", "pull", "linear", "pull")
+    later = load(("end_s = 0.6", 'end_s = 0.6\nseams = ["front"]'))
+    assert later.stage_of("front").name == "cover"
+    assert later.stage_of("left bolster").name == "sew"
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ((('"smooth"', '"soft"'),), r"stage\[1\].ramp: got 'soft', expected .*linear.* .*smooth"),
+        ((('name = "cover"', 'name = "sew"'),), r"stage\[2\].stage: got 'sew' twice"),
+        ((("end_s = 0.2", 'end_s = 0.2\ngroup = "a"'), ('end_s = 0.6\ngroup = "pull"',
+          'end_s = 0.6\ngroup = "a"')), r"stage\[2\].group a: got 'pull' beginning between"),
+        ((("end_s = 0.2", 'end_s = 0.2\nseams = ["frnt"]'),),
+         r"stage\[0\].seams: got 'frnt', expected .*did you mean 'front'"),
+        ((("end_s = 0.2", 'end_s = 0.2\nseams = ["front"]'),
+          ("end_s = 0.6", 'end_s = 0.6\nseams = ["front"]')),
+         r"stage\[2\].seams: got 'front', expected no seam of stage 'sew'"),
+    ],
+)  # fmt: skip
+def test_stages_that_do_not_fit_each_other(load, problems, changes, message):
+    found = [got for got in problems(load, *changes) if "stage[" in got]
+    assert re.match(rf"scene\.toml:\d+: {message}", found[0]), found
+
+
 def test_stage_that_ends_before_it_starts(load, problems):
     (got,) = problems(load, ("start_s = 0.2", "start_s = 0.5"))
     assert re.match(r"scene\.toml:\d+: stage\[1\].*got start 0\.5, end 0\.4, expected", got), got

@@ -154,6 +154,9 @@ def test_unknown_stage_and_missing_snapshot(tmp_path):
         ({"stages": (model.Stage(name="sew", start=0.0, end=0.08),
                      model.Stage(name="hook", start=0.1, end=0.2),
                      model.Stage(name="cover", start=0.2, end=0.3))}, "another stage sew"),
+        ({"stages": (model.Stage(name="sew", start=0.0, end=0.1, ramp="smooth"),
+                     model.Stage(name="hook", start=0.1, end=0.2),
+                     model.Stage(name="cover", start=0.2, end=0.3))}, "another stage sew"),
         ({"stages": (model.Stage(name="sew", start=0.0, end=0.1),
                      model.Stage(name="hook", start=0.12, end=0.2),
                      model.Stage(name="cover", start=0.2, end=0.3))}, "another stage hook"),
@@ -171,3 +174,38 @@ def test_changed_pitch_needs_sewing_again(whole):
     with pytest.raises(InputError, match="another seam, hook or frame of these stages"):
         solve_in_stages(cover(pattern=pattern), whole[1], again_from="hook")
     assert np.isfinite(whole[0].positions).all()
+
+
+def test_a_group_is_kept_and_done_again_as_one(whole, tmp_path):
+    """Hook and cover as one group, ramped smoothly: one snapshot, and the same from it."""
+    pull = {"group": "pull", "ramp": "smooth"}
+    stages = (
+        model.Stage(name="sew", start=0.0, end=0.1),
+        model.Stage(name="hook", start=0.1, end=0.2, **pull),
+        model.Stage(name="cover", start=0.15, end=0.3, **pull),
+    )
+    grouped = cover(stages=stages)
+    assert stage_order(grouped) == ["sew", "pull"]
+    new = solve_in_stages(grouped, tmp_path / "new")
+    assert sorted(p.name for p in (tmp_path / "new").glob("*.npz")) == ["1-sew.npz", "2-pull.npz"]
+    assert io.read_result(tmp_path / "new" / "2-pull.npz").stage == "pull"
+    (tmp_path / "1-sew.npz").write_bytes((tmp_path / "new" / "1-sew.npz").read_bytes())
+    seen = []
+    again = solve_in_stages(
+        grouped, tmp_path, again_from="pull",
+        progress=lambda *, stage, **figures: seen.append(stage),
+    )  # fmt: skip
+    assert set(seen) == {"pull", "at rest"}
+    assert_same_bits(again, new)
+    with pytest.raises(InputError, match=r"got 'hook', expected one of \['sew', 'pull'\]"):
+        solve_in_stages(grouped, tmp_path, again_from="hook")
+    for name in new.history:
+        assert len(new.history[name]) == len(again.history[name])
+
+
+def test_a_seam_closes_in_the_stage_that_names_it():
+    (seam,) = scenes.two_panels().pattern.seams
+    *before, last = cover().stages
+    stages = (*before, dataclasses.replace(last, seams=(seam.name,)))
+    assert [s.stage for s in cover(stages=stages).stitchings] == ["cover"]
+    assert [s.stage for s in cover().stitchings] == ["sew"]

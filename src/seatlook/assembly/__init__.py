@@ -59,7 +59,7 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
         materials=tuple(scene.materials[p.name] for p in panels),
         zone=zone,
         zone_names=zone_names,
-        stitchings=tuple(builder.stitching(s, scene.stages[0]) for s in scene.pattern.seams),
+        stitchings=tuple(builder.stitching(s, scene.stage_of(s.name)) for s in scene.pattern.seams),
         anchors=(
             *(builder.hook(hook, scene, placed) for hook in scene.hooks),
             *(builder.frame(frame, scene, placed) for frame in scene.frames),

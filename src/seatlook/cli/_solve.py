@@ -39,11 +39,11 @@ def solve(
     Parameters
     ----------
     stages
-        Keep the state at the end of every stage as well, in a folder beside the result:
-        seat.stages/1-sew.npz, 2-hook.npz, ...
+        Keep the state at the end of every stage, or group of stages, as well, in a folder beside
+        the result: seat.stages/1-sew.npz, 2-hook.npz, ...
     again_from
-        Stage to do again, with all after it, from the state kept before it: a changed hook does
-        not sew again. Keeps stages.
+        Stage or group to do again, with all after it, from the state kept before it: a changed
+        hook does not sew again. Keeps stages.
     resume
         Go on after the last stage kept of this very scene, so that a run that was stopped ends as
         if it had not been. Keeps stages.

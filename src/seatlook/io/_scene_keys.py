@@ -16,6 +16,7 @@ from seatlook.io._schema import (
     Texts,
 )
 from seatlook.io._views import CAMERA, RIG
+from seatlook.model.cover import RAMPS
 from seatlook.model.scene import MEASURES, SCORE_MEASURES
 
 AS_BUILT = "as built"
@@ -77,6 +78,9 @@ KEYS: dict[str, Kind] = {
                 "name": _NAME,
                 "start_s": Number(low=0, required=True),
                 "end_s": Number(above=0, required=True),
+                "ramp": Text(choices=RAMPS, default="linear"),
+                "group": Text(),
+                "seams": Texts(or_one=True, default=()),
             }
         ),
         required=True,

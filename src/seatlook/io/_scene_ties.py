@@ -12,20 +12,39 @@ import numpy as np
 from seatlook.io._scene_checks import line_length
 from seatlook.io._schema import known
 from seatlook.io._toml import Document, Key
-from seatlook.model import Foam, Frame, Hook, Limit, Pattern, Stage, ZoneBox
+from seatlook.model import Foam, Frame, Hook, Limit, Pattern, Stage, ZoneBox, stage_units
 from seatlook.model.scene import SCORE_MEASURES
 from seatlook.zones import FREE_EDGE, zones
 
 Row = dict[str, Any]
 
 
-def make_stages(document: Document, rows: list[Row]) -> tuple[Stage, ...]:
-    """Build the stages."""
-    stages = []
+def make_stages(document: Document, rows: list[Row], pattern: Pattern | None) -> tuple[Stage, ...]:
+    """Build the stages; every seam closes in one of them, groups are not torn apart."""
+    stages: list[Stage] = []
     for number, row in enumerate(rows):
-        if None not in row.values():
-            with document.blame(("stage", number)):
-                stages.append(Stage(name=row["name"], start=row["start_s"], end=row["end_s"]))
+        key = ("stage", number)
+        for seam in row["seams"] or ():
+            if pattern is not None:
+                known(document, (*key, "seams"), seam, [s.name for s in pattern.seams], "a seam")
+            before = next((s.name for s in stages if seam in s.seams), None)
+            if before is not None:
+                expected = f"no seam of stage {before!r}"
+                document.report((*key, "seams"), repr(seam), expected)
+        if None in (row["name"], row["start_s"], row["end_s"], row["ramp"]):
+            continue
+        with document.blame(key):
+            stage = Stage(
+                name=row["name"],
+                start=row["start_s"],
+                end=row["end_s"],
+                ramp=row["ramp"],
+                group=row["group"],
+                seams=tuple(row["seams"] or ()),
+            )
+            # One by one, so that the line is that of the stage that does not fit.
+            stage_units([*stages, stage])
+            stages.append(stage)
     return tuple(stages)
 
 

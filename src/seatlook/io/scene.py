@@ -78,7 +78,7 @@ class _Reader:
             "materials": self.materials(pattern),
             "textures": self.textures(),
             "placement": self.placement(pattern),
-            "stages": make_stages(document, row["stage"]),
+            "stages": make_stages(document, row["stage"], pattern),
             "hooks": make_hooks(document, row, pattern, foam),
             "frames": make_frames(document, row, pattern, foam),
             "limits": make_limits(document, row["accept"], pattern, boxes),

@@ -1,7 +1,17 @@
 """The core types: frozen, checked when made, SI units inside."""
 
 from seatlook.model._check import FloatArray, IntArray
-from seatlook.model.cover import Anchor, Cover, Hem, Points, Solution, Stage, Stitching, WrinkleMap
+from seatlook.model.cover import (
+    Anchor,
+    Cover,
+    Hem,
+    Points,
+    Solution,
+    Stage,
+    Stitching,
+    WrinkleMap,
+    stage_units,
+)
 from seatlook.model.light import (
     LIGHTS,
     VIEWS,
@@ -61,3 +71,4 @@ __all__ = [
     "named_view",
     "sun",
 ]
+    "stage_units",

@@ -152,3 +152,7 @@ class Scene:
 
     def __post_init__(self) -> None:
         positive(self, "element_size", "c_threshold")
+
+    def stage_of(self, seam: str) -> Stage:
+        """Return the stage in which a seam closes: the one that names it, else the first."""
+        return next((stage for stage in self.stages if seam in stage.seams), self.stages[0])

@@ -56,7 +56,7 @@ def write(key: str, **arrays: FloatArray) -> None:
     if path is None:
         return
     buffer = io.BytesIO()
-    np.savez(buffer, **arrays)
+    np.savez(buffer, allow_pickle=False, **arrays)
     content = buffer.getvalue()
     with suppress(OSError):
         write_bytes(path, hashlib.sha256(content).digest() + content)

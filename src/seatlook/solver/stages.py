@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from seatlook.errors import InputError, did_you_mean
-from seatlook.model import Anchor, Cover, Stage, Stitching
+from seatlook.model import Anchor, Cover, Stage, Stitching, stage_units
 
 _BEGUN = 1e-9  # of a stage
 
@@ -18,10 +18,10 @@ class Step:
 
     Parameters
     ----------
-    stage : the stage that began last
+    stage : group, or name, of the stage that began last
     first : whether it is the first step under that name
     time : [s] at the end of the step
-    progress, before : stage -> share of it that has passed at the end and at the start of the
+    progress, before : stage -> share of its way that is gone at the end and at the start of the
         step; above 1 the stage is over
     """
 
@@ -35,6 +35,11 @@ class Step:
 def schedule(stages: Sequence[Stage], dt: float) -> list[Step]:
     """Equal steps of about ``dt`` [s] up to the end of the last stage.
 
+    Raises
+    ------
+    InputError
+        Stages of one name, or groups that are torn apart.
+
     Examples
     --------
     >>> steps = schedule([Stage(name="sew", start=0.0, end=0.1)], 0.05)
@@ -43,6 +48,7 @@ def schedule(stages: Sequence[Stage], dt: float) -> list[Step]:
     """
     if not stages:
         return []
+    stage_units(stages)
     end = max(stage.end for stage in stages)
     count = max(1, round(end / dt))
     times = [end * k / count for k in range(count + 1)]
@@ -50,7 +56,7 @@ def schedule(stages: Sequence[Stage], dt: float) -> list[Step]:
     steps: list[Step] = []
     for before, time in pairwise(times):
         middle = 0.5 * (before + time)
-        begun = [stage.name for stage in order if stage.start <= middle] or [order[0].name]
+        begun = [stage.unit for stage in order if stage.start <= middle] or [order[0].unit]
         first = not steps or steps[-1].stage != begun[-1]
         after, ahead = _progress(stages, time), _progress(stages, before)
         steps.append(Step(begun[-1], first, time, after, ahead))
@@ -72,7 +78,16 @@ def check_stages(cover: Cover) -> None:
 
 
 def _progress(stages: Sequence[Stage], time: float) -> dict[str, float]:
-    """Time since each stage began over its length."""
+    """How far each stage is on its way; beyond the end, time since it began over its length."""
     passed = {s.name: (time - s.start) / (s.end - s.start) for s in stages}
+    smooth = {s.name for s in stages if s.ramp == "smooth"}
     # Rounding of the time must not let a stage begin with the last step of the one before.
-    return {name: share if share > _BEGUN else 0.0 for name, share in passed.items()}
+    return {
+        name: 0.0 if share <= _BEGUN else _eased(share) if name in smooth else share
+        for name, share in passed.items()
+    }
+
+
+def _eased(share: float) -> float:
+    """Begin and end without a jump of speed."""
+    return share * share * (3.0 - 2.0 * share) if share < 1.0 else share

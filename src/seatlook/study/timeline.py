@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator
+from itertools import zip_longest
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -13,7 +14,7 @@ import numpy.typing as npt
 
 from seatlook import __version__, io
 from seatlook.errors import InputError, did_you_mean
-from seatlook.model import Anchor, Cover, FloatArray, Solution, Stage, Stitching
+from seatlook.model import Anchor, Cover, FloatArray, Solution, Stage, Stitching, stage_units
 from seatlook.solver import solve
 from seatlook.solver.solve import Progress
 
@@ -29,7 +30,7 @@ def solve_in_stages(
     resume: bool = False,
     progress: Progress | None = None,
 ) -> Solution:
-    """Solve a cover and keep its state at the end of every stage.
+    """Solve a cover and keep its state at the end of every stage, a group of stages being one.
 
     Snapshots are written whole or not at all, so a run that is killed leaves those of the stages
     it has finished; going on from one gives the same bits as not stopping.
@@ -37,7 +38,7 @@ def solve_in_stages(
     Parameters
     ----------
     folder : for ``1-sew.npz``, ``2-hook.npz``, ... and the shapes on the way, ``shapes/1-sew.npz``
-    again_from : stage to do again, with all after it, from the snapshot before it
+    again_from : stage or group to do again, with all after it, from the snapshot before it
         What was sewn or tied earlier must not have changed; what comes later, and the foam, may.
     resume : go on from the last snapshot of this very cover, if there is one
     progress : as in ``solve``
@@ -51,8 +52,8 @@ def solve_in_stages(
     Raises
     ------
     InputError
-        ``again_from`` is no stage, its snapshot is missing or is not of this cover's mesh, fabrics
-        and earlier stages; and what ``solve`` raises.
+        ``again_from`` is no stage or group, its snapshot is missing or is not of this cover's mesh,
+        fabrics and earlier stages; and what ``solve`` raises.
     """
     start = None
     if again_from is not None:
@@ -79,8 +80,8 @@ def solve_in_stages(
 
 
 def stage_order(cover: Cover) -> list[str]:
-    """Names of the stages in the order in which they begin."""
-    return [stage.name for stage in _begun(cover)]
+    """Names of the groups, and of stages without one, in the order in which they begin."""
+    return stage_units(cover.stages)
 
 
 def snapshot_name(order: list[str], stage: str) -> str:
@@ -148,11 +149,11 @@ def _before(stage: str, cover: Cover, folder: Path) -> Solution | None:
         raise InputError.single(
             "stage", got=repr(stage), expected=f"one of {order}", hint=did_you_mean(stage, order)
         )
-    at = cover.stages[[s.name for s in cover.stages].index(stage)].start
-    before = [s.name for s in _begun(cover) if s.start < at]
+    starts = {unit: min(s.start for s in cover.stages if s.unit == unit) for unit in order}
+    before = [unit for unit in order if starts[unit] < starts[stage]]
     if not before:
         return None
-    # Of stages that begin together only the last has steps of its own and so a snapshot.
+    # Of what begins together only the last has steps of its own and so a snapshot.
     paths = {name: folder / snapshot_name(order, name) for name in before}
     kept = [name for name in before if paths[name].exists()]
     if not kept:
@@ -171,26 +172,37 @@ def _before(stage: str, cover: Cover, folder: Path) -> Solution | None:
     return state
 
 
-def _changes(old: Cover, new: Cover, stages: list[str]) -> Iterator[str]:
-    """Name what counted in these stages and is no longer the same."""
+def _changes(old: Cover, new: Cover, units: list[str]) -> Iterator[str]:
+    """Name what counted in these groups and stages and is no longer the same."""
     for name in ("rest", "faces", "positions", "materials"):
         if not _same(getattr(old, name), getattr(new, name)):
             yield name
+    stages = [stage.name for stage in _begun(old) if stage.unit in units]
     following = len(stages) + 1
-    for a, b in zip(_begun(old)[:following], _begun(new)[:following], strict=True):
-        if a.name != b.name or a.start != b.start or (b.name in stages and a.end != b.end):
-            yield f"stage {b.name}"
+    for a, b in zip_longest(_begun(old)[:following], _begun(new)[:following]):
+        if not a or not b or not _same_stage(a, b, done=b.name in stages):
+            yield f"stage {(b or a).name}"
     if not _same(_ties(old, stages), _ties(new, stages)):
         yield "seam, hook or frame of these stages"
-    shapes = {t.name: len(t.length) for t in _ties(old, stage_order(old))}
-    for tie in _ties(new, stage_order(new)):
+    shapes = {t.name: len(t.length) for t in _every(old)}
+    for tie in _every(new):
         if tie.stage not in stages and shapes.get(tie.name, len(tie.length)) != len(tie.length):
             yield f"number of points of {tie.name}"
 
 
+def _same_stage(a: Stage, b: Stage, *, done: bool) -> bool:
+    """Whether nothing of a stage has changed; of one still to come, when it begins."""
+    if done:
+        return a == b
+    return (a.name, a.start, a.unit) == (b.name, b.start, b.unit)
+
+
 def _ties(cover: Cover, stages: list[str]) -> tuple[Stitching | Anchor, ...]:
-    every: tuple[Stitching | Anchor, ...] = (*cover.stitchings, *cover.anchors)
-    return tuple(tie for tie in every if tie.stage in stages)
+    return tuple(tie for tie in _every(cover) if tie.stage in stages)
+
+
+def _every(cover: Cover) -> tuple[Stitching | Anchor, ...]:
+    return (*cover.stitchings, *cover.anchors)
 
 
 def _same(a: Any, b: Any) -> bool:
