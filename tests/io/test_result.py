@@ -6,7 +6,7 @@ import pytest
 
 from io_samples import solution
 from seatlook.io.result import read_result, write_result
-from seatlook.model import Curve
+from seatlook.model import Curve, TextureMaps
 
 
 def assert_equal(a, b, at="solution"):
@@ -50,6 +50,26 @@ def test_unloading_curves_and_their_history_come_back(tmp_path):
     )
     write_result(a, tmp_path / "r.npz")
     assert_equal(a, read_result(tmp_path / "r.npz"))
+
+
+def test_panels_share_their_texture_maps_in_the_file_and_after_it(tmp_path):
+    a = solution()
+    pixels = np.random.default_rng(0).integers(0, 255, (64, 64, 3)).astype(np.uint8)
+    maps = TextureMaps(folder="linen", width=0.1, height=0.1, albedo=pixels)
+    materials = tuple(
+        dataclasses.replace(m, appearance=dataclasses.replace(m.appearance, maps=maps))
+        for m in a.cover.materials
+    )
+    a = dataclasses.replace(a, cover=dataclasses.replace(a.cover, materials=materials))
+    write_result(a, tmp_path / "r.npz")
+    with np.load(tmp_path / "r.npz") as file:
+        assert [name for name in file.files if name.endswith("maps.albedo")] == [
+            "cover.materials.0.appearance.maps.albedo"
+        ]
+    b = read_result(tmp_path / "r.npz")
+    assert_equal(a, b)
+    first, second = (m.appearance.maps for m in b.cover.materials)
+    assert first is second
 
 
 def test_cover_without_foam(tmp_path):

@@ -7,11 +7,11 @@ import pytest
 
 from seatlook.errors import InputError
 from seatlook.model import Rig, bulb, sun
+from seatlook.model.colour import srgb_encode
 from seatlook.pbr.exposure import (
     TONE_CURVES,
     ev100,
     saturation_luminance,
-    srgb_encode,
     to_display,
 )
 from seatlook.pbr.rig import SEAT, illuminance, lux_at_seat, white_of

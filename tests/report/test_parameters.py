@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 
 import scenes
-from seatlook.model import Appearance, Curve
-from seatlook.report.parameters import parameter_tables
+from seatlook.model import Appearance, Curve, TextureMaps
+from seatlook.report.parameters import parameter_tables, parameter_toml
 
 
 def rows(table):
@@ -47,6 +48,19 @@ def test_values_are_in_the_units_of_the_files():
     assert rows(tables["foam foam"])["young_kpa"] == ("25", None)
     assert rows(tables["texture matt"])["texture_scale_mm"] == ("2", None)
     assert rows(tables["texture matt"])["albedo"] == ("0.250, 0.250, 0.250", None)
+
+
+def test_maps_are_shown_as_the_file_names_them():
+    pixels = np.full((2, 2, 3), 128, dtype=np.uint8)
+    maps = TextureMaps(folder="linen", width=0.12, height=0.12, albedo=pixels)
+    scene = replace(
+        scenes.two_panels(),
+        textures=MappingProxyType({"linen": Appearance(albedo=np.ones(3), maps=maps)}),
+    )
+    shown = rows(parameter_tables(scene)["texture linen"])
+    assert (shown["maps"][0], shown["maps_width_mm"][0]) == ("linen", "120")
+    written = tomllib.loads(parameter_toml(scene)["texture linen"])["appearance"]
+    assert (written["maps"], written["maps_width_mm"]) == ("linen", 120.0)
 
 
 def test_every_key_of_a_supplied_material_file_is_in_the_table():

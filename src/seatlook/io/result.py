@@ -36,6 +36,7 @@ from seatlook.model import (
     Solution,
     Stage,
     Stitching,
+    TextureMaps,
 )
 
 FORMAT = "seatlook result"
@@ -45,7 +46,7 @@ _TYPES: dict[str, type] = {
     t.__name__: t
     for t in (
         Anchor, Appearance, Cover, Curve, Fabric, Foam, FoamMaterial, Hem, Material, Points,
-        Solution, Stage, Stitching,
+        Solution, Stage, Stitching, TextureMaps,
     )
 }  # fmt: skip
 
@@ -95,7 +96,7 @@ def read_result(path: Path | str) -> Solution:
             hint="the file was written by a newer seatlook",
         )  # fmt: skip
     try:
-        solution = _unpacked(meta["solution"], arrays)
+        solution = _unpacked(meta["solution"], arrays, {})
     except (KeyError, TypeError, ValueError) as error:
         raise _refusal(path, f"{type(error).__name__}: {error}") from error
     if not isinstance(solution, Solution):
@@ -111,6 +112,8 @@ def _packed(value: Any, at: str, arrays: dict[str, Any]) -> Any:
     """Turn a value into JSON, moving its arrays to ``arrays`` under their path."""
     here = f"{at}." if at else ""
     if isinstance(value, np.ndarray):
+        # Panels of one material share its maps, which are large.
+        at = next((name for name, other in arrays.items() if other is value), at)
         arrays[at] = value
         return {"array": at}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
@@ -130,15 +133,19 @@ def _packed(value: Any, at: str, arrays: dict[str, Any]) -> Any:
     raise TypeError(f"{at}: {type(value).__name__} has no place in a result file")
 
 
-def _unpacked(node: Any, arrays: Mapping[str, Any]) -> Any:
-    """Build the value again; lists become tuples, as all sequences of the core types are."""
+def _unpacked(node: Any, arrays: Mapping[str, Any], maps: dict[str, Any]) -> Any:
+    """Build the value again; lists become tuples, as all sequences of the core types are.
+
+    ``maps``: the texture maps built so far, so that panels share them again.
+    """
     if isinstance(node, list):
-        return tuple(_unpacked(v, arrays) for v in node)
+        return tuple(_unpacked(v, arrays, maps) for v in node)
     if not isinstance(node, dict):
         return node
     if "array" in node:
         return arrays[node["array"]]
     if "map" in node:
-        return MappingProxyType({k: _unpacked(v, arrays) for k, v in node["map"].items()})
-    fields = {k: _unpacked(v, arrays) for k, v in node.items() if k != "type"}
-    return _TYPES[node["type"]](**fields)
+        return MappingProxyType({k: _unpacked(v, arrays, maps) for k, v in node["map"].items()})
+    fields = {k: _unpacked(v, arrays, maps) for k, v in node.items() if k != "type"}
+    made = _TYPES[node["type"]](**fields)
+    return maps.setdefault(json.dumps(node), made) if isinstance(made, TextureMaps) else made

@@ -23,6 +23,7 @@ from seatlook.io.dxf import SMALLEST_NOTCH
 from seatlook.io.material import material_path, read_foam_material, read_material
 from seatlook.io.mesh import read_foam
 from seatlook.io.seams import read_pattern
+from seatlook.io.texture_maps import map_files
 from seatlook.model import (
     Appearance,
     FloatArray,
@@ -196,7 +197,11 @@ class _Reader:
         if path not in self.read:
             self.read[path] = None
             with self.document.blame(key):
-                self.read[path] = read_material(path)
+                material = self.read[path] = read_material(path)
+                maps = material.appearance.maps
+                if maps is not None:
+                    for file in map_files(path.parent / maps.folder).values():
+                        self.files[file] = file.read_bytes()
         return self.read[path]
 
     def materials(self, pattern: Pattern | None) -> MappingProxyType[str, Material]:

@@ -28,6 +28,7 @@ from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMateria
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
 from seatlook.model.scene import Frame, Hook, Limit, Pose, Scene, ZoneBox
 from seatlook.model.shells import ShellResult, Shells, ShellState
+from seatlook.model.texture import TextureMaps
 
 __all__ = [
     "LIGHTS",
@@ -63,6 +64,7 @@ __all__ = [
     "Solution",
     "Stage",
     "Stitching",
+    "TextureMaps",
     "WrinkleMap",
     "ZoneBox",
     "booth",

@@ -10,6 +10,7 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model._check import FloatArray, IntArray, floats, in_range, ints, positive
+from seatlook.model.texture import TextureMaps
 
 Texture = Literal["none", "leather", "suede", "weave"]
 
@@ -44,7 +45,6 @@ class Curve:
         """Make a curve of one constant stiffness [N/m]."""
         return cls(strain=np.zeros(1), stiffness=np.array([stiffness]))
 
-
     def tension(self, strain: FloatArray) -> FloatArray:
         """Return the tension [N/m] at Green strains of 0 and more, in closed form.
 
@@ -58,6 +58,7 @@ class Curve:
         rise = np.append(np.diff(self.stiffness) / np.diff(self.strain), 0.0)
         return np.asarray((reach * (self.stiffness + 0.5 * rise * reach)).sum(axis=-1))
 
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fabric:
     """Mechanics of a sheet; bending does not follow from the membrane but stands for itself.
@@ -69,10 +70,10 @@ class Fabric:
     warp, weft : Curve             tension along and across the grain
     shear : Curve                  over the shear angle 2 E12
     poisson : float                contraction in weft per stretch along warp, may exceed 0.5
-    compression_ratio : float      compressive stiffness over the first stiffness of the curve
     warp_unloading, weft_unloading : Curve, optional
         tension on the way back, over the strain from where it is gone; the same as on the way out
         if not given, and never below it
+    compression_ratio : float      compressive stiffness over the first stiffness of the curve
     bending_warp, bending_weft, bending_twist : float [N m]
         D11 (curvature along warp), D22 and D66 of ``m = D kappa`` with kappa = (k11, k22, 2 k12)
     bending_poisson : float        D12 = bending_poisson * D22
@@ -83,9 +84,9 @@ class Fabric:
     warp: Curve
     weft: Curve
     shear: Curve
-    poisson: float = 0.0
     warp_unloading: Curve | None = None
     weft_unloading: Curve | None = None
+    poisson: float = 0.0
     compression_ratio: float = 1.0
     bending_warp: float
     bending_weft: float
@@ -95,9 +96,9 @@ class Fabric:
     def __post_init__(self) -> None:
         positive(self, "thickness", "density", "bending_warp", "bending_weft", "bending_twist")
         in_range(self, "compression_ratio", 1e-6, 1.0)
-        for name, matrix in (("membrane", self.membrane_matrix), ("bending", self.bending_matrix)):
         for name in ("warp", "weft"):
             _check_unloading(name, getattr(self, name), getattr(self, f"{name}_unloading"))
+        for name, matrix in (("membrane", self.membrane_matrix), ("bending", self.bending_matrix)):
             lowest = float(np.linalg.eigvalsh(matrix)[0])
             if not lowest > 0:
                 raise InputError.single(
@@ -127,7 +128,6 @@ class Fabric:
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
 def _check_unloading(name: str, loading: Curve, unloading: Curve | None) -> None:
     """Refuse a way back that is softer than the way out: it would give more than was put in."""
     if unloading is None:
@@ -156,6 +156,7 @@ def _check_unloading(name: str, loading: Curve, unloading: Curve | None) -> None
         )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Appearance:
     """How a surface answers light, plus the relief of its grain.
 
@@ -173,6 +174,7 @@ class Appearance:
     texture : relief of the grain; scale is the size of one cell [m], depth its height [m]
     perforation_pitch, perforation_diameter : float [m]
         punched holes in staggered rows along the warp; diameter 0 for none
+    maps : measured maps; albedo, metalness and roughness above multiply theirs
     """
 
     albedo: FloatArray
@@ -189,6 +191,7 @@ class Appearance:
     texture_depth: float = 0.0
     perforation_pitch: float = 0.006
     perforation_diameter: float = 0.0
+    maps: TextureMaps | None = None
 
     def __post_init__(self) -> None:
         floats(self, "albedo", 3)
@@ -203,6 +206,13 @@ class Appearance:
         positive(self, "texture_scale", "perforation_pitch")
         in_range(self, "texture_depth", 0.0, 0.01)
         in_range(self, "perforation_diameter", 0.0, 0.8 * self.perforation_pitch)
+        layered = self.coat > 0 or bool(self.sheen.any())
+        if layered and self.maps is not None and self.maps.metalness is not None:
+            raise InputError.single(
+                "Appearance.maps",
+                got="a metalness map below a coat or a nap",
+                expected="one of them: metal has neither",
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError, did_you_mean
 from seatlook.model import FloatArray, Rig
+from seatlook.model.colour import srgb_encode
 from seatlook.pbr.rig import SEAT, lux_at_seat
 
 Radiance = npt.NDArray[np.float32]
@@ -67,19 +68,6 @@ def neutral(x: FloatArray) -> FloatArray:
 
 
 TONE_CURVES: dict[str, Callable[[FloatArray], FloatArray]] = {"clamp": clamp, "neutral": neutral}
-
-
-def srgb_encode(linear: FloatArray) -> FloatArray:
-    """Opto-electronic transfer of sRGB (IEC 61966-2-1) on [0, 1].
-
-    Examples
-    --------
-    >>> srgb_encode(np.array([0.0, 0.0031308, 0.18, 1.0])).round(4).tolist()
-    [0.0, 0.0404, 0.4614, 1.0]
-    """
-    return np.where(
-        linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055
-    )
 
 
 def to_display(

@@ -10,7 +10,7 @@ from PIL import ImageDraw, ImageFont
 
 from seatlook.errors import InputError, did_you_mean
 from seatlook.model import Camera, FloatArray, Solution
-from seatlook.pbr.exposure import srgb_encode
+from seatlook.model.colour import srgb_decode, srgb_encode
 from seatlook.pbr.kernels import surface as kernel
 from seatlook.pbr.picture import Picture
 from seatlook.pbr.studio import Studio, eye_of, studio
@@ -152,8 +152,7 @@ def colour_table(colormap: str) -> FloatArray:
     """Colours (256, 3) in linear sRGB, from low to high."""
     if colormap != "diverging":
         srgb = matplotlib.colormaps[colormap](np.linspace(0, 1, 256))[:, :3]
-        linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-        return np.asarray(linear)
+        return np.asarray(srgb_decode(srgb))
     return _diverging(np.linspace(-1, 1, 256))
 
 

@@ -20,6 +20,7 @@ from seatlook.pbr.foam import FOAM
 from seatlook.pbr.kernels import bvh, light, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.kernels.stitch import Thread
+from seatlook.pbr.measured import load_maps, map_sets, mean_albedo
 from seatlook.pbr.picture import Image
 from seatlook.pbr.quality import Quality, quality_named, quality_within
 from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, sky_levels, white_of
@@ -231,11 +232,20 @@ class Studio:
                     hint=did_you_mean(unknown[0], own),
                 )
             own |= appearance
-        materials = pack_materials([*own.values(), FOAM])
+        looks = [*own.values(), FOAM]
+        materials = pack_materials(looks)
         couplings = np.empty((len(materials), len(load_tables().scale_mean)))
         tables.coupling(load_tables(), materials, couplings)
         used = {int(k) for k in materials["texture"] if k >= 0}
-        return shade.Look(materials, couplings, load_tables(), load_textures(*used), self.thread)
+        return shade.Look(
+            materials,
+            couplings,
+            load_tables(),
+            load_textures(*used),
+            load_maps(map_sets(looks)),
+            np.zeros(1, dtype=MATERIAL),
+            self.thread,
+        )
 
     def _kept(self, key: Hashable, make: Callable[[], Any]) -> Any:
         """Return the cached value of ``key``; the oldest of more than 24 is dropped."""
@@ -301,11 +311,18 @@ def studio(solution: Solution) -> Studio:
 
 
 def pack_materials(appearances: list[Appearance]) -> np.ndarray:
-    """Records (p,) of the kernels' material type."""
+    """Records (p,) of the kernels' material type; the albedo is the mean of what is seen."""
     out = np.zeros(len(appearances), dtype=MATERIAL)
+    sets = map_sets(appearances)
     for record, a in zip(out, appearances, strict=True):
         for name in MATERIAL.names or ():
-            record[name] = texture_index(a) if name == "texture" else getattr(a, name)
+            if name not in ("texture", "maps"):
+                record[name] = getattr(a, name)
+        record["texture"] = texture_index(a)
+        record["maps"] = -1
+        if a.maps is not None:
+            record["maps"] = sets.index(a.maps)
+            record["albedo"] *= mean_albedo(a.maps)
     return out
 
 

@@ -29,6 +29,7 @@ MATERIAL = np.dtype(
         ("texture_depth", np.float64),
         ("perforation_pitch", np.float64),
         ("perforation_diameter", np.float64),
+        ("maps", np.int64),
     ]
 )
 

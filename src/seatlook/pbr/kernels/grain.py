@@ -30,7 +30,7 @@ LEATHER, SUEDE, WEAVE = 0, 1, 2
 _STROKE = 0.035
 # Texels are as wide as this share of a sample: the levels' own filter is wider than a box, and the
 # steep narrow folds of a grain are no Gaussian that roughness could stand for.
-_SHARP = 0.5
+SHARP = 0.5
 
 
 @leaf()
@@ -58,7 +58,7 @@ def _filtered(t, textures, material, u, v, width):
     """Value of one map for a sample ``width`` [m] wide."""
     tile = textures.cells * material.texture_scale
     texel = tile / textures.size
-    level = max(0.0, np.log2(_SHARP * width / texel))
+    level = max(0.0, np.log2(SHARP * width / texel))
     last = len(textures.start) - 1
     fine = min(int(level), last)
     coarse = min(fine + 1, last)

@@ -19,6 +19,7 @@ from seatlook.pbr.kernels.light import (
     panorama_towards,
     towards_part,
 )
+from seatlook.pbr.kernels.measured import Measured, measured
 from seatlook.pbr.kernels.stitch import Thread, away_from_seam, reach, relief, seam_at, tilt
 from seatlook.pbr.kernels.surface import (
     along,
@@ -43,13 +44,16 @@ class Look(NamedTuple):
     """What the surface is made of.
 
     ``materials`` (p,): records of ``brdf.MATERIAL`` per panel; ``couplings`` (p, k): mean of what
-    reaches their diffuse base, over roughness.
+    reaches their diffuse base, over roughness; ``changed`` (1,): room for a record of a sample
+    whose metalness is that of a map.
     """
 
     materials: npt.NDArray[np.void]
     couplings: npt.NDArray[np.float64]
     tables: Tables
     textures: Textures
+    maps: Measured
+    changed: npt.NDArray[np.void]
     thread: Thread
 
 
@@ -93,17 +97,21 @@ def _pattern_at(mesh, f, b1, b2):
 
 @leaf()
 def _detail(mesh, look, material, f, hit, n, v):
-    """Normal with relief and thread, base colour, roughness and light kept by the holes."""
+    """Normal with relief and thread, base colour, roughness, metalness, light left by the holes."""
     b1, b2, t, plane, _, spread = hit
-    roughness = material.roughness
+    roughness, metal, tint = material.roughness, material.metalness, (1.0, 1.0, 1.0)
     share, lighter, kept = 1.0, 0.0, 1.0
-    if material.texture >= 0 or material.perforation_diameter > 0.0:
+    if material.texture >= 0 or material.maps >= 0 or material.perforation_diameter > 0.0:
         u, w = _pattern_at(mesh, f, b1, b2)
         width = t * spread / np.sqrt(max(0.05, dot(n, v)))
+        su, sv, gu, gv = 0.0, 0.0, 0.0, 0.0
+        if material.maps >= 0:
+            tint, roughness, metal, su, sv = measured(look.maps, material, u, w, width)
         if material.texture >= 0:
+            gu, gv, roughness, share = grain(look.textures, material, roughness, u, w, width)
+        if material.texture >= 0 or material.maps >= 0:
             warp, weft = _frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
-            su, sv, roughness, share = grain(look.textures, material, roughness, u, w, width)
-            n = unit(along(along(n, -su, warp), -sv, weft))
+            n = unit(along(along(n, -su - gu, warp), -sv - gv, weft))
         if material.perforation_diameter > 0.0:
             kept = 1.0 - holes(
                 material.perforation_pitch, material.perforation_diameter, u, w, width
@@ -119,8 +127,12 @@ def _detail(mesh, look, material, f, hit, n, v):
         roughness += covered * max(0.0, 0.6 - roughness)
     share *= 1.0 - lighter
     base = material.albedo
-    colour = (base[0] * share + lighter, base[1] * share + lighter, base[2] * share + lighter)
-    return n, colour, roughness, kept
+    colour = (
+        base[0] * tint[0] * share + lighter,
+        base[1] * tint[1] * share + lighter,
+        base[2] * tint[2] * share + lighter,
+    )
+    return n, colour, roughness, metal, kept
 
 
 @leaf()
@@ -147,7 +159,11 @@ def sample(mesh, look, lights, around, f, hit, q, visible, work):
         n = (-n[0], -n[1], -n[2])
     n = _towards_eye(n, v)
     material = look.materials[mesh.panel[f]]
-    n, colour, roughness, kept = _detail(mesh, look, material, f, hit, n, v)
+    n, colour, roughness, metal, kept = _detail(mesh, look, material, f, hit, n, v)
+    if metal != material.metalness:
+        look.changed[0] = material
+        look.changed[0].metalness = metal
+        material = look.changed[0]
     n = _towards_eye(n, v)
     warp, weft = _frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
     out, f_out = work[0], work[1]
