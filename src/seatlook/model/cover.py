@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import groupby
 from types import MappingProxyType
 from typing import Literal
 
@@ -133,10 +131,6 @@ class Hem:
         floats(self, "stiffness", k)
 
 
-Ramp = Literal["linear", "smooth"]
-RAMPS: tuple[Ramp, ...] = ("linear", "smooth")
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stage:
     """A stretch of process time [s] in which some ties are ramped from 0 to full."""
@@ -151,9 +145,6 @@ class Stage:
                 f"stage {self.name}",
                 got=f"start {self.start}, end {self.end}",
                 expected="0 <= start < end",
-    ramp: Ramp = "linear"
-    group: str | None = None
-    seams: tuple[str, ...] = ()
             )
 
 
@@ -162,47 +153,6 @@ class Cover:
     """All panels meshed and placed, with what will pull on them.
 
     Parameters
-        if self.ramp not in RAMPS:
-            raise InputError.single(
-                f"stage {self.name}.ramp", got=repr(self.ramp), expected=" or ".join(RAMPS)
-            )
-
-    @property
-    def unit(self) -> str:
-        """What it is kept and drawn as: its group, or itself."""
-        return self.group or self.name
-
-
-def stage_units(stages: Sequence[Stage]) -> list[str]:
-    """Names of groups, and of stages without one, in the order in which they begin.
-
-    Raises
-    ------
-    InputError
-        Two stages have one name, or another stage begins between two of a group.
-
-    Examples
-    --------
-    >>> stage_units([Stage(name="a", start=0.0, end=1.0, group="sew"),
-    ...              Stage(name="pull", start=1.0, end=3.0),
-    ...              Stage(name="b", start=0.5, end=2.0, group="sew")])
-    ['sew', 'pull']
-    """
-    order = sorted(stages, key=lambda stage: stage.start)
-    names = [stage.name for stage in stages]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise InputError.single("stage", got=f"{twice[0]!r} twice", expected="names of their own")
-    units = [unit for unit, _ in groupby(order, key=lambda stage: stage.unit)]
-    torn = [unit for unit in units if units.count(unit) > 1]
-    if torn:
-        last = units.index(torn[0], units.index(torn[0]) + 1)
-        raise InputError.single(
-            f"group {torn[0]}",
-            got=f"{units[last - 1]!r} beginning between its stages",
-            expected="stages that begin one after the other",
-        )
-    return units
     ----------
     rest : (n, 2) float64 [m]     X, panel by panel, first axis along the warp
     uv : (n, 2) float64 [m]       the same in pattern coordinates, for textures
@@ -277,6 +227,8 @@ class Solution:
     multipliers : name of stitching or anchor -> (s, 3) [N], the part that is not the spring's
     forces : name of stitching or anchor -> (s, 3) [N], whole pull on side a or on the cover
     friction_anchor : (n, 3) float64 [m]   where each vertex last stuck to the foam; nan = free
+    strain_peak : (m, 2) float64 [1]
+        largest strains so far along warp and weft, -inf = none, of fabrics that unload another way
     history : column -> (k,), one row per step: time, energy, residual, gap, iterations, ...
     figures : name -> final value, e.g. "seam_gap_max" [m], "residual" [1], "cpu_seconds"
     """
@@ -292,6 +244,7 @@ class Solution:
     )
     forces: MappingProxyType[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
     friction_anchor: FloatArray
+    strain_peak: FloatArray | None = None
     stage: str
     status: Status
     reason: str = ""
@@ -306,6 +259,8 @@ class Solution:
         for name in ("strain_top", "strain_mid", "strain_bottom"):
             floats(self, name, m, 2, 2)
         floats(self, "friction_anchor", n, 3, finite=False)
+        if self.strain_peak is not None:
+            floats(self, "strain_peak", m, 2, finite=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -331,8 +286,3 @@ class WrinkleMap:
         m = len(self.c)
         for name in ("c", "w1", "w2", "r_stretch", "w_stretch", "w_compression"):
             floats(self, name, m)
-    strain_peak : (m, 2) float64 [1]
-        largest strains so far along warp and weft, -inf = none, of fabrics that unload another way
-    strain_peak: FloatArray | None = None
-        if self.strain_peak is not None:
-            floats(self, "strain_peak", m, 2, finite=False)
