@@ -71,6 +71,6 @@ __all__ = [
     "bulb",
     "direction",
     "named_view",
+    "stage_units",
     "sun",
 ]
-    "stage_units",
