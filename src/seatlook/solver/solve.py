@@ -11,7 +11,7 @@ import numpy as np
 
 from seatlook import __version__
 from seatlook.errors import ConvergenceError, InputError
-from seatlook.model import Cover, FloatArray, Solution
+from seatlook.model import Cover, FloatArray, Solution, stage_units
 from seatlook.solver.explicit import Explicit
 from seatlook.solver.method import MethodName, method_of
 from seatlook.solver.process import Process, Record
@@ -205,6 +205,6 @@ def _after(plan: list[Step], start: Solution, cover: Cover) -> list[Step]:
         raise InputError.single(
             "start.stage",
             got=repr(start.stage),
-            expected=f"one of {[s.name for s in cover.stages]}",
+            expected=f"one of {stage_units(cover.stages)}",
         )
     return plan[done[-1] + 1 :]
