@@ -14,7 +14,9 @@ import numpy as np
 from seatlook.errors import InputError, did_you_mean
 from seatlook.io._schema import MM, Array, Kind, Number, Table, Text, read_table, shown
 from seatlook.io._toml import Document, Key, read_document
-from seatlook.model import Appearance, Curve, Fabric, FoamMaterial, Material
+from seatlook.io.colour import Colour
+from seatlook.io.texture_maps import read_texture_maps
+from seatlook.model import Appearance, Curve, Fabric, FoamMaterial, Material, TextureMaps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,31 +41,6 @@ class _StiffnessCurve:
             return None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Colour:
-    """Three linear numbers from 0 to 1, ``"#rrggbb"`` in sRGB, or ``"lab(L, a, b)"``."""
-
-    required: bool = False
-    default: None = None
-
-    def read(self, document: Document, key: Key, value: Any) -> Any:
-        if not isinstance(value, str):
-            return Array(shape=(3,), low=0.0, high=1.0).read(document, key, value)
-        if re.fullmatch(r"#[0-9a-fA-F]{6}", value):
-            return linear_from_srgb(np.array([int(value[i : i + 2], 16) for i in (1, 3, 5)]) / 255)
-        number = r"\s*(-?\d+\.?\d*)\s*"
-        lab = re.fullmatch(rf"lab\({number},{number},{number}\)", value)
-        if lab is None:
-            expected = '"#rrggbb", "lab(L, a, b)" or three linear numbers from 0 to 1'
-            document.report(key, shown(value), expected)
-            return None
-        colour = linear_from_lab(np.array([float(x) for x in lab.groups()]))
-        if colour.min() < -1e-3 or colour.max() > 1.001:
-            document.report(key, shown(value), "a colour that sRGB holds")
-            return None
-        return np.clip(colour, 0.0, 1.0)
-
-
 _FABRIC: dict[str, Kind] = {
     "thickness_mm": Number(above=0, high=20, scale=MM, required=True),
     "density_kg_per_m2": Number(above=0, high=20, required=True),
@@ -82,11 +59,12 @@ _FABRIC: dict[str, Kind] = {
     "first_wrinkle_radius_mm": Number(above=0, scale=MM),
 }
 _APPEARANCE: dict[str, Kind] = {
-    "albedo": _Colour(required=True),
-    "metalness": Number(low=0, high=1, default=0.0),
-    "roughness": Number(low=0.08, high=1, required=True),
+    # Required where no map gives them.
+    "albedo": Colour(),
+    "metalness": Number(low=0, high=1),
+    "roughness": Number(low=0.08, high=1),
     "f0": Number(low=0, high=0.2, default=0.04),
-    "sheen": _Colour(),
+    "sheen": Colour(),
     "sheen_roughness": Number(low=0.4, high=1, default=0.5),
     "coat": Number(low=0, high=1, default=0.0),
     "coat_roughness": Number(low=0.08, high=1, default=0.3),
@@ -96,6 +74,8 @@ _APPEARANCE: dict[str, Kind] = {
     "texture_depth_mm": Number(low=0, high=10, scale=MM, default=0.0),
     "perforation_pitch_mm": Number(above=0, high=100, scale=MM, default=6.0),
     "perforation_diameter_mm": Number(low=0, high=50, scale=MM, default=0.0),
+    "maps": Text(),
+    "maps_width_mm": Number(above=0, high=10_000, scale=MM),
 }
 _FOAM: dict[str, Kind] = {
     "strain": Array(shape=(None,), low=0.0, high=1.0, required=True),
@@ -159,8 +139,9 @@ def read_material(name_or_path: str | Path) -> Material:
             "source": _source({**_FABRIC, **_APPEARANCE}),
         },
     )
-    document.finish()
     fabric, look = row["fabric"], row["appearance"]
+    maps = _texture_maps(document, look)
+    document.finish()
     c_threshold = fabric.pop("c_threshold_per_mm")
     radius = fabric.pop("first_wrinkle_radius_mm")
     if c_threshold is not None and radius is not None:
@@ -170,7 +151,8 @@ def read_material(name_or_path: str | Path) -> Material:
     with document.blame(("fabric",)):
         made = Fabric(**{_without_unit(k): v for k, v in fabric.items()})
     with document.blame(("appearance",)):
-        seen = Appearance(**{_without_unit(k): v for k, v in look.items() if v is not None})
+        given = {_without_unit(k): v for k, v in look.items() if v is not None}
+        seen = Appearance(**given, maps=maps)
     document.finish()
     return Material(
         name=document.file.stem,
@@ -180,6 +162,31 @@ def read_material(name_or_path: str | Path) -> Material:
         first_wrinkle_radius=radius,
         source=_given(row["source"]),
     )
+
+
+def _texture_maps(document: Document, look: dict[str, Any]) -> TextureMaps | None:
+    """Take the keys of the maps out of ``look``; what a map gives is multiplied by 1 by default."""
+    folder, width = look.pop("maps"), look.pop("maps_width_mm")
+    given: tuple[str, ...] = ()
+    maps = None
+    if (folder is None) != (width is None):
+        missing = "maps_width_mm" if width is None else "maps"
+        document.report(("appearance", missing), "nothing", "maps and maps_width_mm, or neither")
+    elif folder is not None:
+        with document.blame(("appearance", "maps")):
+            maps = read_texture_maps(document.file.parent / folder, width=width, name=folder)
+            given = maps.given
+    # What is there and wrong is reported already, and so is a folder that cannot be read.
+    written = document.data.get("appearance", look)
+    for name, one in (("albedo", np.ones(3)), ("roughness", 1.0)):
+        if look[name] is None and name in given:
+            look[name] = one
+        elif name not in written and (folder is None or maps is not None):
+            expected = "an array of numbers" if name == "albedo" else "a number"
+            document.report(("appearance", name), "nothing", expected)
+    if look["metalness"] is None:
+        look["metalness"] = 1.0 if "metalness" in given else 0.0
+    return maps
 
 
 def read_foam_material(name_or_path: str | Path) -> FoamMaterial:
@@ -237,39 +244,6 @@ def material_path(name_or_path: str | Path, *, beside: Path | None = None) -> Pa
             hint=did_you_mean(text, names),
         )
     return path
-
-
-def linear_from_srgb(encoded: Any) -> Any:
-    """Decode sRGB values in [0, 1] to linear ones (IEC 61966-2-1).
-
-    Examples
-    --------
-    >>> linear_from_srgb(np.array([0.0, 0.5, 1.0])).round(4).tolist()
-    [0.0, 0.214, 1.0]
-    """
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-
-
-def linear_from_lab(lab: Any) -> Any:
-    """Linear sRGB (3,) of CIE L*a*b* (3,) under D65 for the 2 degree observer (CIE 15:2018).
-
-    Examples
-    --------
-    >>> linear_from_lab(np.array([50.0, 0.0, 0.0])).round(4).tolist()
-    [0.1842, 0.1842, 0.1842]
-    """
-    lightness, a, b = lab
-    f = (lightness + 16) / 116 + np.array([a / 500, 0.0, -b / 200])
-    white = np.array([0.95047, 1.0, 1.08883])
-    xyz = white * np.where(f > 6 / 29, f**3, 3 * (6 / 29) ** 2 * (f - 4 / 29))
-    to_rgb = np.array(
-        [
-            [3.2404542, -1.5371385, -0.4985314],
-            [-0.9692660, 1.8760108, 0.0415560],
-            [0.0556434, -0.2040259, 1.0572252],
-        ]
-    )
-    return to_rgb @ xyz
 
 
 def _names(table: str) -> tuple[str, ...]:

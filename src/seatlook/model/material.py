@@ -10,6 +10,7 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model._check import FloatArray, IntArray, floats, in_range, ints, positive
+from seatlook.model.texture import TextureMaps
 
 Texture = Literal["none", "leather", "suede", "weave"]
 
@@ -173,6 +174,7 @@ class Appearance:
     texture : relief of the grain; scale is the size of one cell [m], depth its height [m]
     perforation_pitch, perforation_diameter : float [m]
         punched holes in staggered rows along the warp; diameter 0 for none
+    maps : measured maps; albedo, metalness and roughness above multiply theirs
     """
 
     albedo: FloatArray
@@ -189,6 +191,7 @@ class Appearance:
     texture_depth: float = 0.0
     perforation_pitch: float = 0.006
     perforation_diameter: float = 0.0
+    maps: TextureMaps | None = None
 
     def __post_init__(self) -> None:
         floats(self, "albedo", 3)
@@ -203,6 +206,13 @@ class Appearance:
         positive(self, "texture_scale", "perforation_pitch")
         in_range(self, "texture_depth", 0.0, 0.01)
         in_range(self, "perforation_diameter", 0.0, 0.8 * self.perforation_pitch)
+        layered = self.coat > 0 or bool(self.sheen.any())
+        if layered and self.maps is not None and self.maps.metalness is not None:
+            raise InputError.single(
+                "Appearance.maps",
+                got="a metalness map below a coat or a nap",
+                expected="one of them: metal has neither",
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

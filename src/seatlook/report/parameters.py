@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from seatlook.model import Curve, Scene
+from seatlook.model import Curve, Scene, TextureMaps
 from seatlook.report.chart import number
 from seatlook.report.data import Table
 
@@ -32,6 +32,7 @@ _FILE_KEYS: Mapping[str, tuple[str, float]] = {
     "texture_depth": ("texture_depth_mm", 1e3),
     "perforation_pitch": ("perforation_pitch_mm", 1e3),
     "perforation_diameter": ("perforation_diameter_mm", 1e3),
+    "maps_width": ("maps_width_mm", 1e3),
     "stress": ("stress_kpa", 1e-3),
     "young": ("young_kpa", 1e-3),
     "element_size": ("element_size_mm", 1e3),
@@ -82,13 +83,20 @@ def parameter_toml(scene: Scene) -> MappingProxyType[str, str]:
 
 
 def _block(name: str, values: Any) -> str:
-    fields = (f.name for f in dataclasses.fields(values) if f.name not in ("name", "source"))
-    return f"[{name}]\n" + "".join(_line(f, getattr(values, f)) for f in fields)
+    return f"[{name}]\n" + "".join(_line(field, value) for field, value in _fields(values))
+
+
+def _fields(values: Any) -> Iterator[tuple[str, Any]]:
+    """Names and values of what a file would hold of a fabric, an appearance or a foam."""
+    for field in dataclasses.fields(values):
+        value = getattr(values, field.name)
+        if isinstance(value, TextureMaps):
+            yield from (("maps", value.folder), ("maps_width", value.width))
+        elif field.name not in ("name", "source") and value is not None:
+            yield field.name, value
 
 
 def _line(name: str, value: Any) -> str:
-    if value is None:
-        return ""
     key, factor = _FILE_KEYS.get(name, (name, 1.0))
     return f"{key} = {_toml(value, factor)}\n"
 
@@ -114,10 +122,9 @@ def _digits(value: float) -> str:
 
 
 def _rows(values: Any, source: Mapping[str, str]) -> Iterator[Row]:
-    for field in dataclasses.fields(values):
-        if field.name not in ("name", "source"):
-            key, value = _entry(field.name, getattr(values, field.name))
-            yield key, value, source.get(key)
+    for name, value in _fields(values):
+        key, text = _entry(name, value)
+        yield key, text, source.get(key)
 
 
 def _entry(name: str, value: Any) -> tuple[str, str]:
