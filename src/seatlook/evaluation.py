@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol
@@ -156,15 +156,29 @@ def surface(scene: Scene, solution: Solution, indices: WrinkleMap) -> Surface:
 
 
 def draw_pictures(
-    scene: Scene, solution: Solution, camera: Camera, out: Path, say: Progress
+    scene: Scene,
+    solution: Solution,
+    camera: Camera,
+    out: Path,
+    say: Progress,
+    *,
+    quality: str = "standard",
+    tone: str = "clamp",
+    radiance: str | None = None,
 ) -> MappingProxyType[tuple[str, str], str]:
-    """Render every texture under every rig; return (texture, rig) -> path below ``out``."""
+    """Render every texture under every rig; return (texture, rig) -> path below ``out``.
+
+    ``radiance``: "npy" or "exr" to keep what was seen [cd/m2] beside each picture.
+    """
     pictures = {}
     for rig in scene.rigs:
         for name, appearance in scene.textures.items():
             say("render", rig=rig.name, texture=name)
             path = picture_path(name, rig.name)
-            pbr.render(solution, appearance, rig=rig, camera=camera).save(out / path)
+            image = pbr.render(solution, appearance, rig=rig, camera=camera, quality=quality)
+            replace(image, tone=tone).save(out / path)
+            if radiance is not None:
+                image.save((out / path).with_suffix(f".{radiance}"))
             pictures[name, rig.name] = path
     return MappingProxyType(pictures)
 

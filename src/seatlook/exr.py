@@ -13,7 +13,7 @@ from seatlook.files import replacing
 
 
 def write_exr(pixels: npt.NDArray[np.float32], path: Path) -> None:
-    """Write (h, w, 3) float32 as channels R, G, B of 32 bits, losslessly compressed.
+    """Write luminances (h, w, 3) [cd/m2] as R, G, B of 32 bits, losslessly compressed.
 
     Raises
     ------
@@ -21,7 +21,11 @@ def write_exr(pixels: npt.NDArray[np.float32], path: Path) -> None:
         The extra is not installed.
     """
     library = _library(path)
-    header = {"compression": library.ZIP_COMPRESSION, "type": library.scanlineimage}
+    header = {
+        "compression": library.ZIP_COMPRESSION,
+        "type": library.scanlineimage,
+        "whiteLuminance": 1.0,
+    }
     with (
         replacing(path) as temporary,
         library.File(header, {"RGB": np.ascontiguousarray(pixels, dtype=np.float32)}) as file,

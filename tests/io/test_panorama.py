@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seatlook.errors import InputError
+from seatlook.exr import write_exr
 from seatlook.io.panorama import read_panorama
 
 HEAD = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n"
@@ -64,9 +65,22 @@ def test_panorama_of_a_rig(demo_scene):
     assert name in text
     scene = demo_scene.with_name("with-sky.toml")
     scene.write_text(text.replace(name, 'panorama = "sky.hdr"\npanorama_cd_m2 = 100.0', 1))
-    with pytest.raises(InputError, match=r"panorama: got sky.hdr, expected an .hdr file"):
+    with pytest.raises(InputError, match=r"panorama: got sky.hdr, expected an .hdr or .exr file"):
         load_scene(scene)
     demo_scene.with_name("sky.hdr").write_bytes(packed())
     rigs = [rig for rig in load_scene(scene).rigs if rig.panorama is not None]
     assert len(rigs) == 1
     assert rigs[0].panorama[0, 0] == pytest.approx([100.0, 200.0, 400.0], rel=0.02)
+
+
+def test_openexr_is_the_same_sky(tmp_path):
+    sky = np.random.default_rng(0).random((8, 16, 3)).astype(np.float32) * 1e4
+    write_exr(sky, tmp_path / "sky.exr")
+    assert (read_panorama(tmp_path / "sky.exr") == sky).all()
+
+
+def test_openexr_of_another_shape(tmp_path, problems):
+    write_exr(np.ones((8, 8, 3), dtype=np.float32), tmp_path / "sky.exr")
+    assert problems(read_panorama, tmp_path / "sky.exr") == [
+        "sky.exr: panorama: got 8 x 8, expected twice as wide as high"
+    ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import astuple, fields, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -198,10 +198,15 @@ def render(
     rig: Names = (),
     view: str | None = None,
     maps: Annotated[bool, Parameter(help="Draw the wrinkle maps as well.")] = True,
+    quality: str = "standard",
+    tone: Literal["clamp", "neutral"] = "clamp",
+    radiance: Literal["npy", "exr"] | None = None,
 ) -> None:
     """Draw a result under the lights of a scene; nothing is solved.
 
     Example: seatlook render seat.toml seat.npz --out pictures --texture suede --rig sun
+
+    Example: seatlook render seat.toml seat.npz --out pictures --quality high --radiance exr
 
     Parameters
     ----------
@@ -211,6 +216,12 @@ def render(
         Rig of the scene; may be given more than once. All of them if not given.
     view
         Camera of the scene. The first if not given.
+    quality
+        draft, standard or high, or a tier from T0 to T5.
+    tone
+        How light above white is shown: cut off, or rolled off (Khronos neutral).
+    radiance
+        Keep what is seen, in cd/m2, beside each picture; exr needs the extra "exr".
     """
     from seatlook.evaluation import draw_maps, draw_pictures, wrinkle_map
     from seatlook.pbr import offscreen_backend
@@ -220,7 +231,9 @@ def render(
     chosen, camera = narrowed(read, texture, rig), camera_of(read, view)
     solution = result_of(read, result)
     with progress() as show:
-        draw_pictures(chosen, solution, camera, out, show)
+        draw_pictures(
+            chosen, solution, camera, out, show, quality=quality, tone=tone, radiance=radiance
+        )
         if maps:
             draw_maps(solution, wrinkle_map(read, solution), camera, out, show)
 

@@ -113,7 +113,9 @@ def _sky(document: Document, number: int, row: dict[str, Any]) -> FloatArray | N
         return None
     path = document.file.parent / row["panorama"]
     if not path.is_file():
-        document.report(("rig", number, "panorama"), row["panorama"], "an .hdr file that exists")
+        document.report(
+            ("rig", number, "panorama"), row["panorama"], "an .hdr or .exr file that exists"
+        )
         return None
     return np.asarray(row["panorama_cd_m2"] * read_panorama(path))
 

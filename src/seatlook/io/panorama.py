@@ -1,4 +1,4 @@
-"""Skies as Radiance pictures (``.hdr``, RGBE) of all directions."""
+"""Skies as Radiance (``.hdr``, RGBE) or OpenEXR pictures of all directions."""
 
 from __future__ import annotations
 
@@ -9,20 +9,26 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError
+from seatlook.exr import read_exr
 from seatlook.model import FloatArray
 
 
 def read_panorama(path: Path) -> FloatArray:
-    """Read an equirectangular ``.hdr`` picture as (h, w, 3) in its own unit, usually none.
+    """Read an equirectangular picture as (h, w, 3) in its own unit, usually none.
 
-    Ward 1991, *Real Pixels*: three mantissas and one exponent per pixel, rows run-length encoded.
+    ``.exr`` needs the extra ``[exr]``; anything else is read as ``.hdr``: Ward 1991, *Real
+    Pixels*, three mantissas and one exponent per pixel, rows run-length encoded.
 
     Raises
     ------
     InputError
-        Not a Radiance picture, another orientation than ``-Y h +X w``, not twice as wide as high,
-        or cut short.
+        Not a Radiance or OpenEXR picture, another orientation than ``-Y h +X w``, not twice as
+        wide as high, or cut short; no extra.
     """
+    if path.suffix.lower() == ".exr":
+        pixels = read_exr(path).astype(np.float64)
+        _check_size(path, *pixels.shape[:2])
+        return pixels if pixels.ndim == 3 else np.repeat(pixels[..., None], 3, axis=2)
     content = path.read_bytes()
     head = re.match(rb"#\?(?:RADIANCE|RGBE)\n(.*?)\n\n-Y (\d+) \+X (\d+)\n", content, re.DOTALL)
     if head is None or b"FORMAT=32-bit_rle_rgbe" not in head[1]:
@@ -33,10 +39,7 @@ def read_panorama(path: Path) -> FloatArray:
             file=path,
         )
     height, width = int(head[2]), int(head[3])
-    if width != 2 * height:
-        raise InputError.single(
-            "panorama", got=f"{width} x {height}", expected="twice as wide as high", file=path
-        )
+    _check_size(path, height, width)
     try:
         rgbe = _pixels(np.frombuffer(content, np.uint8, offset=head.end()), height, width)
     except IndexError:
@@ -45,6 +48,13 @@ def read_panorama(path: Path) -> FloatArray:
         ) from None
     scale = np.where(rgbe[..., 3] > 0, np.exp2(rgbe[..., 3].astype(float) - 136), 0.0)
     return np.asarray((rgbe[..., :3] + 0.5) * scale[..., None])
+
+
+def _check_size(path: Path, height: int, width: int) -> None:
+    if width != 2 * height:
+        raise InputError.single(
+            "panorama", got=f"{width} x {height}", expected="twice as wide as high", file=path
+        )
 
 
 def _pixels(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArray[np.uint8]:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from PIL import Image as Pillow
 
 from seatlook.errors import InputError
+from seatlook.exr import write_exr
 from seatlook.files import write_bytes
 from seatlook.model import Camera, FloatArray
 from seatlook.pbr.exposure import Radiance, to_display
@@ -48,12 +49,12 @@ class Image:
         return png(self.to_srgb())
 
     def save(self, path: Path) -> None:
-        """Write ``.png`` (display) or ``.npy`` (radiance).
+        """Write ``.png`` (display), ``.npy`` or, with the extra ``[exr]``, ``.exr`` (radiance).
 
         Raises
         ------
         InputError
-            Another file ending.
+            Another file ending, or no extra.
         """
         if path.suffix == ".png":
             write_bytes(path, self.to_png())
@@ -61,8 +62,11 @@ class Image:
             buffer = io.BytesIO()
             np.save(buffer, self.radiance, allow_pickle=False)
             write_bytes(path, buffer.getvalue())
+        elif path.suffix == ".exr":
+            write_exr(self.radiance, path)
         else:
-            raise InputError.single("image file", got=path.name, expected="a .png or .npy name")
+            expected = "a .png, .npy or .exr name"
+            raise InputError.single("image file", got=path.name, expected=expected)
 
     def _repr_png_(self) -> bytes:
         return self.to_png()
