@@ -125,6 +125,15 @@ def test_triangulation_keeps_the_outline_and_its_gates(amplitudes, phases, seed,
     assert np.quantile(smallest, 0.01) >= mesh.QUANTILE_ANGLE_DEG
 
 
+@pytest.mark.parametrize("turn", [0.1, 0.4, 0.7, 1.0, 1.3])
+def test_straight_edges_at_any_angle_leave_no_flat_triangle(turn):
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    points, faces = mesh.triangulate(rectangle(0.25, 0.06, 0.012) @ rotation.T + 0.3, 0.012)
+    area = mesh.face_areas(points, faces)
+    assert area.min() > 0.1 * area.mean()
+    assert area.sum() == pytest.approx(0.25 * 0.06, rel=1e-12)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_size_and_bias_of_a_large_sheet(seed):
     points, faces = mesh.triangulate(rectangle(0.25, 0.2, 0.005), 0.005, seed=seed)

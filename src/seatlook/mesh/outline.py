@@ -32,6 +32,7 @@ _LATTICE = 0.865  # of h; thinning widens the mesh by the inverse (measured 1.15
 _REPAIR_ROUNDS = 12
 _ENOUGH_DEG = 26.0  # repair beyond this costs half of the time and changes nothing in the solver
 _ATTEMPTS = 6
+_FLAT = 1e-9  # of the median area; a face below it is a line
 
 
 def triangulate(
@@ -189,8 +190,10 @@ def _delaunay(
         points = np.concatenate([fixed, free])
         faces = np.asarray(Delaunay(points).simplices, dtype=np.int64)
         faces = faces[shapely.contains_xy(region, points[faces].mean(axis=1))]
-        turned = face_vectors(points, faces)[:, 2] < 0
-        faces[turned] = faces[turned, ::-1]
+        area = face_vectors(points, faces)[:, 2]
+        faces[area < 0] = faces[area < 0, ::-1]
+        # Where an outline runs straight, rounding leaves flat triangles between its points.
+        faces = faces[np.abs(area) > _FLAT * np.median(np.abs(area))]
         missing = _missing(segments, faces, len(points))
         if not len(missing) or not len(free):
             return points, faces
