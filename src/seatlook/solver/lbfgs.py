@@ -14,6 +14,8 @@ from seatlook.solver.factor import Preconditioner
 from seatlook.solver.kernels import lbfgs as kernel
 
 _SHORTEST = 1e-10  # part of the full step; shorter ones are lost in rounding
+_ROUNDING = 1e-12  # of the value; smaller changes are rounding, and the slope decides
+_FLATTER = 0.8  # of the slope, in size, that such a step must end with
 
 
 class Potential:
@@ -85,7 +87,7 @@ class Lbfgs:
         done: Callable[[FloatArray], bool],
         iterations: int,
     ) -> Descent:
-        """Lower the potential in place of ``x``; every accepted step obeys Armijo's rule.
+        """Lower the potential in place of ``x``; every step obeys Armijo's rule, up to rounding.
 
         ``done`` looks at the gradient, which stays readable as ``self.gradient``.
         """
@@ -125,7 +127,11 @@ class Lbfgs:
     def _search(
         self, potential: Potential, x: FloatArray, value: float, slope: float
     ) -> tuple[float | None, int]:
-        """Backtrack by parabolas until Armijo's rule holds; leaves the trial point and gradient."""
+        """Backtrack by parabolas until Armijo's rule holds; leaves the trial point and gradient.
+
+        Near rest the value falls by less than it is rounded by. There a step is taken that makes
+        the slope flatter, which says the same of a parabola (Hager and Zhang 2005).
+        """
         longest = kernel.largest_row(self._direction)
         step = min(1.0, self.step_cap / longest) if longest > 0 else 0.0
         tries = 0
@@ -135,6 +141,10 @@ class Lbfgs:
             new = potential.value(self._trial, self._trial_gradient)
             if new <= value + self.ARMIJO * step * slope:
                 return new, tries
+            if new <= value + _ROUNDING * abs(value):
+                left = kernel.dot(self._direction, self._trial_gradient)
+                if abs(left) <= -_FLATTER * slope:
+                    return new, tries
             excess = new - value - step * slope
             if not np.isfinite(excess):
                 step *= 0.1
