@@ -1,5 +1,6 @@
 """Triangle meshes as plain arrays; no core types, so that every other layer may use it."""
 
+from seatlook.mesh.intersection import intersecting_pairs
 from seatlook.mesh.outline import (
     MAX_HEXAGONAL_BIAS,
     MIN_ANGLE_DEG,
@@ -33,6 +34,7 @@ __all__ = [
     "face_normals",
     "face_vectors",
     "hexagonal_bias",
+    "intersecting_pairs",
     "resample",
     "triangulate",
     "vertex_normals",

@@ -45,6 +45,7 @@ _CONDITIONS: Mapping[str, tuple[str, float, float, str]] = {
         1e2,
         " %",
     ),
+    "intersecting_pairs": ("pairs of triangles that pass through each other", 0.0, 1.0, ""),
 }
 # column of the history -> its name on the page, factor to the unit in it
 _CHARTED: Mapping[str, tuple[str, float]] = {
@@ -206,8 +207,18 @@ def _zones(evaluation: Evaluation) -> Table:
 def _shape(evaluation: Evaluation) -> Table:
     """Standoff of the zones, the farthest from the foam first, without the free edges."""
     rows = zone_standoff(evaluation.solution, evaluation.standoff)
+    figures = evaluation.solution.figures
+    none = 0.0 if "intersecting_pairs" in figures else None
     return Table(
-        heads=("zone", "mean [mm]", "rms [mm]", "lowest [mm]", "highest [mm]", "measured [%]"),
+        heads=(
+            "zone",
+            "mean [mm]",
+            "rms [mm]",
+            "lowest [mm]",
+            "highest [mm]",
+            "measured [%]",
+            "intersecting pairs",
+        ),
         rows=tuple(
             (
                 row.zone,
@@ -216,6 +227,7 @@ def _shape(evaluation: Evaluation) -> Table:
                 1e3 * row.lowest,
                 1e3 * row.highest,
                 100 * row.measured,
+                figures.get(f"zone/{row.zone}/intersecting_pairs", none),
             )
             for row in sorted(rows, key=lambda row: -row.rms)
             if row.zone != "free edge"

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatlook.errors import InvertedElementError
+from seatlook.solver.crossing import crossing_pairs, visible_crossings, zone_crossings
 from seatlook.solver.foundation import Foundation
 from seatlook.solver.process import RESIDUAL, Process, Record
 
@@ -60,6 +61,7 @@ def figures(process: Process, records: Sequence[Record]) -> dict[str, float]:
         "iterations": float(sum(r.iterations for r in records)),
         "steps": float(len(records)),
         **process.ties.figures(process.x),
+        **_crossings(process),
     }
     for name, force in process.resultants().items():
         result |= {f"{name}_{axis}": float(f) for axis, f in zip("xyz", force, strict=True)}
@@ -69,6 +71,16 @@ def figures(process: Process, records: Sequence[Record]) -> dict[str, float]:
         result["wavelength"] = process.foundation.wavelength
         result["wavelength_over_h"] = process.foundation.wavelength / process.cover.element_size
     return result
+
+
+def _crossings(process: Process) -> dict[str, float]:
+    """Pairs of triangles that pass through each other, where it shows and in every zone."""
+    pairs = crossing_pairs(process.cover, process.x)
+    zones = zone_crossings(process.cover, pairs)
+    return {
+        "intersecting_pairs": float(visible_crossings(process.cover, pairs)),
+        **{f"zone/{name}/intersecting_pairs": float(count) for name, count in zones.items()},
+    }
 
 
 def _check_faces(process: Process) -> None:
