@@ -11,6 +11,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from io_samples import solution, wrinkles
 from seatlook.io.exports import WRITERS, export
+from seatlook.model import TextureMaps
 
 SIDES = ("top", "mid", "bottom")
 
@@ -108,6 +109,62 @@ def test_glb_is_y_up_and_carries_the_indices(tmp_path):
     both = indices.w2[:2].mean()
     assert insert.vertex_attributes["_W2"].ravel() == pytest.approx([both, 0.0, both, 0.2])
     assert len(scene.geometry["Wange links"].faces) == 1
+
+
+def with_maps(maps, **look):
+    """The sample with maps on its second panel."""
+    a = solution()
+    first, second = a.cover.materials
+    appearance = dataclasses.replace(second.appearance, coat=0.0, maps=maps, **look)
+    second = dataclasses.replace(second, appearance=appearance)
+    return dataclasses.replace(a, cover=dataclasses.replace(a.cover, materials=(first, second)))
+
+
+def test_glb_carries_maps_to_the_millimetre(tmp_path):
+    random = np.random.default_rng(0)
+    pixels = {
+        name: random.integers(0, 255, shape).astype(np.uint8)
+        for name, shape in {
+            "albedo": (4, 8, 3), "roughness": (4, 8), "metalness": (2, 4), "normal": (4, 8, 3)
+        }.items()
+    }  # fmt: skip
+    a = with_maps(TextureMaps(folder="made", width=0.12, height=0.06, **pixels), metalness=0.7)
+    export(a, wrinkles(), tmp_path / "c.glb")
+    tree = gltf_tree(tmp_path / "c.glb")
+    suede, leather = tree["materials"]
+    assert "baseColorTexture" not in suede["pbrMetallicRoughness"]
+    numbers = leather["pbrMetallicRoughness"]
+    assert (numbers["metallicFactor"], numbers["roughnessFactor"]) == (0.7, 0.40)
+    assert tree["extensionsUsed"] == ["KHR_materials_sheen", "KHR_texture_transform"]
+
+    mesh = trimesh.load(tmp_path / "c.glb").geometry["Wange links"]
+    material = mesh.visual.material
+    assert (np.asarray(material.baseColorTexture)[..., :3] == pixels["albedo"]).all()
+    assert (np.asarray(material.normalTexture)[..., :3] == pixels["normal"]).all()
+    packed = np.asarray(material.metallicRoughnessTexture)
+    assert (packed[..., 1] == pixels["roughness"]).all()
+    assert packed.shape[:2] == (4, 8)
+    assert mesh.visual.uv == pytest.approx(a.cover.uv[4:], abs=1e-7)
+
+    # Where a pattern point lies in a picture, from the top left, by the extension's formula.
+    infos = (numbers["baseColorTexture"], numbers["metallicRoughnessTexture"])
+    for info in (*infos, leather["normalTexture"]):
+        transform = info["extensions"]["KHR_texture_transform"]
+        u, v = 0.03, 0.05
+        x = transform["offset"][0] + transform["scale"][0] * u
+        y = transform["offset"][1] + transform["scale"][1] * (1 - v)
+        assert x % 1 == pytest.approx(0.03 / 0.12)
+        assert y % 1 == pytest.approx(1 - 0.05 / 0.06)
+
+
+def test_glb_of_one_material_holds_its_maps_once(tmp_path):
+    pixels = np.full((64, 64, 3), 90, dtype=np.uint8)
+    a = with_maps(TextureMaps(folder="made", width=0.1, height=0.1, albedo=pixels))
+    second = a.cover.materials[1]
+    a = dataclasses.replace(a, cover=dataclasses.replace(a.cover, materials=(second, second)))
+    export(a, wrinkles(), tmp_path / "c.glb")
+    tree = gltf_tree(tmp_path / "c.glb")
+    assert (len(tree["materials"]), len(tree["images"])) == (1, 1)
 
 
 @pytest.mark.parametrize("suffix", WRITERS)

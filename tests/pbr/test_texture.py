@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from seatlook.model import Appearance
+from seatlook.model import Appearance, TextureMaps
 from seatlook.pbr.kernels.grain import grain
+from seatlook.pbr.kernels.measured import measured
+from seatlook.pbr.measured import load_maps
 from seatlook.pbr.studio import pack_materials
-from seatlook.pbr.texture import MAPS, load_textures, texture_index
+from seatlook.pbr.texture import MAPS, baked, load_textures, texture_index
 
 
 def look(name, **change):
@@ -87,6 +89,39 @@ def test_contrast_falls_smoothly_with_distance(textures):
     ]
     assert spread == sorted(spread, reverse=True)
     assert spread[-1] < 0.1 * spread[0]
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_baked_grain_is_the_grain(textures, name):
+    """Slopes, colour and roughness of the maps at the pixels' middles, to 8 bits."""
+    a = Appearance(
+        albedo=np.full(3, 0.5), texture=name, texture_scale=0.001, texture_depth=2e-4, roughness=0.5
+    )
+    b = baked(a)
+    assert (b.texture, b.maps.width) == ("none", pytest.approx(0.064))
+    packed = load_maps((b.maps,))
+    grained, mapped = pack_materials([a])[0], pack_materials([b])[0]
+    pixel = 0.064 / 512
+    apart = []
+    for i, j in np.random.default_rng(0).integers(0, 512, (200, 2)):
+        u, v = (i + 0.5) * pixel, (j + 0.5) * pixel
+        su, sv, _, share = grain(textures, grained, 0.5, u, v, 2 * pixel)
+        colour, _, _, mu, mv = measured(packed, mapped, u, v, 1e-6)
+        seen = colour[0] * mapped["albedo"][0]
+        if name == "suede":
+            # Without the marks of the hand.
+            assert 0.925 * seen < share * 0.5 < 1.005 * seen
+        else:
+            assert seen == pytest.approx(share * 0.5, rel=0.02)
+        apart.append((su - mu, sv - mv))
+    assert np.abs(apart).max() < 0.03
+    assert b.roughness > 0.5
+
+
+def test_baking_leaves_measured_maps_alone():
+    maps = TextureMaps(folder="m", width=1.0, height=1.0, roughness=np.ones((1, 1), dtype=np.uint8))
+    a = Appearance(albedo=np.ones(3), texture="leather", texture_depth=1e-4, maps=maps)
+    assert baked(a) is a
 
 
 def test_no_depth_is_no_texture():

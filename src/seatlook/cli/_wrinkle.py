@@ -322,10 +322,12 @@ def _direction(facing: tuple[float, float, float]) -> FloatArray:
 
 
 def _export(solution: Solution, indices: WrinkleMap, paths: tuple[Path, ...]) -> None:
-    from seatlook import io
+    from seatlook import io, pbr
 
     for path in paths:
-        io.export(solution, indices, path)
+        # A viewer knows no grain by formula.
+        drawn = path.suffix.lower() == ".glb"
+        io.export(pbr.bake_grain(solution) if drawn else solution, indices, path)
 
 
 def _print_rows(rows: Sequence[Mapping[str, Any]]) -> None:

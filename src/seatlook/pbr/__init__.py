@@ -12,6 +12,7 @@ __all__ = [
     "Image",
     "Picture",
     "Studio",
+    "bake_grain",
     "ev100",
     "illuminance",
     "lux_at_seat",
@@ -19,12 +20,14 @@ __all__ = [
     "render",
     "render_checker",
     "render_map",
+    "sketch",
 ]
 
 _PUBLIC: dict[str, str] = {
     "Image": "seatlook.pbr.picture",
     "Picture": "seatlook.pbr.picture",
     "Studio": "seatlook.pbr.studio",
+    "bake_grain": "seatlook.pbr.texture",
     "ev100": "seatlook.pbr.exposure",
     "illuminance": "seatlook.pbr.rig",
     "lux_at_seat": "seatlook.pbr.rig",
@@ -32,6 +35,7 @@ _PUBLIC: dict[str, str] = {
     "render": "seatlook.pbr.studio",
     "render_checker": "seatlook.pbr.checker",
     "render_map": "seatlook.pbr.maps",
+    "sketch": "seatlook.pbr.clay",
 }
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import functools
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.model import Appearance, FloatArray
+from seatlook.model import Appearance, FloatArray, Solution, TextureMaps
+from seatlook.model.colour import srgb_encode
 from seatlook.pbr.kernels.cells import two_nearest
 from seatlook.pbr.kernels.grain import LEATHER, SUEDE, WEAVE, Textures
 
@@ -67,6 +69,46 @@ def packed_levels(stack: FloatArray) -> npt.NDArray[np.float32]:
         if n:
             stack = stack.reshape(n, 2, n, 2, 4).mean(axis=(1, 3))
     return out
+
+
+def bake_grain(solution: Solution) -> Solution:
+    """Write the grain of all materials into maps, for programs that have no such formula.
+
+    Materials with measured maps keep those alone.
+    """
+    made = {m.name: replace(m, appearance=baked(m.appearance)) for m in solution.cover.materials}
+    materials = tuple(made[m.name] for m in solution.cover.materials)
+    return replace(solution, cover=replace(solution.cover, materials=materials))
+
+
+def baked(appearance: Appearance) -> Appearance:
+    """Return the same appearance with its grain as maps of one tile, at half its resolution."""
+    which = texture_index(appearance)
+    if which < 0 or appearance.maps is not None:
+        return appearance
+    size = SIZE // 2
+    texels = load_textures(which).texels[which, _START[1] : _START[2]]
+    # First row at the top.
+    level = np.asarray(texels.reshape(size, size, 4)[::-1], dtype=np.float64)
+    steep = appearance.texture_depth / appearance.texture_scale
+    normal = np.dstack([-steep * level[..., :2], np.ones((size, size))])
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    share = np.repeat(srgb_encode(level[..., 3:]), 3, axis=2)
+    tile = CELLS * appearance.texture_scale
+    # What the finest level had and this one has not.
+    alpha2 = appearance.roughness**4 + 2 * steep**2 * float(level[..., 2].mean())
+    return replace(
+        appearance,
+        texture="none",
+        roughness=min(1.0, alpha2**0.25),
+        maps=TextureMaps(
+            folder=f"grain of {appearance.texture}",
+            width=tile,
+            height=tile,
+            albedo=np.rint(255 * share).astype(np.uint8),
+            normal=np.rint(255 * (normal + 1) / 2).astype(np.uint8),
+        ),
+    )
 
 
 def _grid() -> tuple[FloatArray, FloatArray]:
