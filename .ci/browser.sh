@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
-# Chromium and its driver, for the tests of the gallery page only.
+# Chromium and its driver, and three.js, for the tests of the gallery page and of the GLB only.
 # usage: browser.sh VENV
 set -euo pipefail
 venv=$1
-"$venv/bin/python" -m pip --disable-pip-version-check install --quiet --group browser
-command -v chromium >/dev/null && exit 0
-if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+apt() {
+    if [ "$(id -u)" != 0 ] || ! command -v apt-get >/dev/null; then
+        echo "the page tests need $1; as root: apt-get install $*" >&2
+        exit 2
+    fi
     apt-get update -qq
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium >/dev/null
-else
-    echo "the page tests need Chromium; as root: apt-get install chromium" >&2
-    exit 2
-fi
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+}
+"$venv/bin/python" -m pip --disable-pip-version-check install --quiet --group browser
+command -v npm >/dev/null || apt npm
+npm install --silent --no-audit --no-fund --no-save --prefix "$venv/three" three@0.187.0
+command -v chromium >/dev/null || apt chromium
