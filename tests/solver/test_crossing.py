@@ -10,9 +10,11 @@ import scenes
 from covers import vertices_as_points
 from seatlook import model
 from seatlook.assembly import assemble
+from seatlook.design.pattern import cut_outline
 from seatlook.mesh import intersecting_pairs
 from seatlook.solver.crossing import (
     crossing_pairs,
+    hem_crossings,
     sewn_vertices,
     visible_crossings,
     zone_crossings,
@@ -104,3 +106,28 @@ def test_corner_of_several_panels_is_one_place():
     pairs = sewn_vertices(dataclasses.replace(cover, stitchings=(seam, more)))
     found = {tuple(p) for p in pairs}
     assert {(a, b), (b, third), (a, third)} <= found
+
+
+@pytest.mark.parametrize(("angle", "outside"), [(150.0, False), (100.0, False), (40.0, True)])
+def test_allowance_below_a_sharp_ridge_comes_through_the_other_panel(angle, outside):
+    """One thickness below its panel it lies inside, as long as the foam's side is no sharp edge."""
+    scene = scenes.two_panels(gap=0.0, element_size=0.006)
+    panels = tuple(
+        dataclasses.replace(p, cut_outline=cut_outline(p.outline, 0.012))
+        for p in scene.pattern.panels
+    )
+    thick = MappingProxyType(dict.fromkeys(("LEFT", "RIGHT"), scenes.material(thickness=0.004)))
+    pattern = dataclasses.replace(scene.pattern, panels=panels)
+    cover = assemble(dataclasses.replace(scene, pattern=pattern, materials=thick, hem=True))
+    x, half = cover.uv[:, 0] - 0.1 * of(cover, 0), np.radians(angle / 2)
+    positions = np.column_stack([np.sin(half) * x, cover.uv[:, 1], -np.cos(half) * np.abs(x)])
+    pairs = hem_crossings(cover, positions)
+    assert bool(len(pairs)) == outside
+    assert (cover.panel[pairs[:, 0]] != cover.panel[pairs[:, 1]]).all()
+    assert (np.abs(x[cover.faces[pairs]]).max(axis=(1, 2)) < 0.02).all()
+    assert not len(crossing_pairs(cover, positions))
+
+
+def test_cover_without_hem_has_no_allowance():
+    cover = sewn(left=0.02, right=0.02)
+    assert len(hem_crossings(cover, cover.positions)) == 0

@@ -51,8 +51,9 @@ def intersecting_pairs(
     pairs, flat = pairs[chosen], flat[chosen]
     first, second = first[chosen], second[chosen]
     same = _Joined(joined, len(points)).corners(faces[pairs[:, 0]], faces[pairs[:, 1]])
-    hit = _crossed(first, second, above[chosen], same.any(axis=2))
-    hit |= _crossed(second, first, below[chosen], same.any(axis=1))
+    mine, yours = np.asarray(same.any(axis=2)), np.asarray(same.any(axis=1))
+    hit = _crossed(first, second, above[chosen], mine)
+    hit |= _crossed(second, first, below[chosen], yours)
     alone = np.flatnonzero(flat & ~same.any(axis=(1, 2)))
     hit[alone] = _overlap(first[alone], second[alone])
     return np.asarray(pairs[hit])

@@ -46,6 +46,7 @@ _CONDITIONS: Mapping[str, tuple[str, float, float, str]] = {
         " %",
     ),
     "intersecting_pairs": ("pairs of triangles that pass through each other", 0.0, 1.0, ""),
+    "hem_crossing_pairs": ("triangles of a folded allowance that come through", 0.0, 1.0, ""),
 }
 # column of the history -> its name on the page, factor to the unit in it
 _CHARTED: Mapping[str, tuple[str, float]] = {

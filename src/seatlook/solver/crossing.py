@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from seatlook.mesh import boundary_loops, intersecting_pairs
+from seatlook.mesh import boundary_loops, intersecting_pairs, vertex_normals
 from seatlook.model import Cover, FloatArray, IntArray, Points
 from seatlook.zones import FREE_EDGE
 
@@ -25,6 +25,25 @@ def crossing_pairs(cover: Cover, positions: FloatArray) -> IntArray:
     positions : (n, 3) float64 [m]
     """
     return intersecting_pairs(positions, cover.faces, sewn_vertices(cover))
+
+
+def hem_crossings(cover: Cover, positions: FloatArray) -> IntArray:
+    """Return the pairs (k, 2) of an allowance's triangle that passes through one of the cover.
+
+    The hem has no mesh of its own: an allowance lies one thickness below its panel, inside the
+    cover wherever it passes through no panel. The first of a pair is the triangle it lies below.
+    """
+    hem, n, m = cover.hem, len(positions), len(cover.faces)
+    if hem is None:
+        return np.zeros((0, 2), dtype=np.int64)
+    thickness = np.zeros(n)
+    thickness[cover.faces] = cover.thickness[:, None]
+    layer = positions - thickness[:, None] * vertex_normals(positions, cover.faces)
+    below = np.flatnonzero(hem.density > 0.0)
+    faces = np.concatenate([cover.faces, cover.faces[below] + n])
+    pairs = intersecting_pairs(np.concatenate([positions, layer]), faces)
+    through = pairs[(pairs[:, 0] < m) & (pairs[:, 1] >= m)]
+    return np.column_stack([below[through[:, 1] - m], through[:, 0]])
 
 
 def zone_crossings(cover: Cover, pairs: IntArray) -> dict[str, int]:
@@ -73,7 +92,7 @@ def _all_of_one(pairs: IntArray, count: int) -> IntArray:
     links = coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(count, count))
     group = connected_components(links, directed=False)[1][ends]
     one, other = np.nonzero(group[:, None] == group)
-    return np.column_stack([ends[one], ends[other]])[one != other]
+    return np.asarray(np.column_stack([ends[one], ends[other]])[one != other])
 
 
 class _Rims:

@@ -7,7 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatlook.errors import InvertedElementError
-from seatlook.solver.crossing import crossing_pairs, visible_crossings, zone_crossings
+from seatlook.solver.crossing import (
+    crossing_pairs,
+    hem_crossings,
+    visible_crossings,
+    zone_crossings,
+)
 from seatlook.solver.foundation import Foundation
 from seatlook.solver.process import RESIDUAL, Process, Record
 
@@ -77,7 +82,11 @@ def _crossings(process: Process) -> dict[str, float]:
     """Pairs of triangles that pass through each other, where it shows and in every zone."""
     pairs = crossing_pairs(process.cover, process.x)
     zones = zone_crossings(process.cover, pairs)
+    hem = {}
+    if process.cover.hem is not None:
+        hem["hem_crossing_pairs"] = float(len(hem_crossings(process.cover, process.x)))
     return {
+        **hem,
         "intersecting_pairs": float(visible_crossings(process.cover, pairs)),
         **{f"zone/{name}/intersecting_pairs": float(count) for name, count in zones.items()},
     }
