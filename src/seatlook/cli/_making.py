@@ -22,7 +22,7 @@ def timeline(
     rig: str | None = None,
     view: str | None = None,
     width: int = 480,
-    seconds: float = 6.0,
+    seconds: float = 5.0,
 ) -> None:
     """Draw a cover in the making: timeline.png, a picture per stage, and timeline.gif.
 
@@ -33,7 +33,8 @@ def timeline(
     Parameters
     ----------
     rig
-        Rig of the scene. The first if not given.
+        Rig of the scene to render the picture per stage in, in the panels' own materials. As clay,
+        like the animation, if not given.
     view
         Camera of the scene. The first if not given; it steps back until all panels are in view.
     width
@@ -57,7 +58,7 @@ def timeline(
         result_of(read, result),
         result.with_suffix(".stages"),
         out,
-        rig=rigs[rig] if rig else read.rigs[0],
+        rig=rigs[rig] if rig else None,
         camera=cameras[view] if view else read.cameras[0],
         width=width,
         seconds=seconds,

@@ -22,6 +22,7 @@ Pixels = npt.NDArray[np.uint8]
 
 AT_REST = "at rest"
 _LABEL = 30  # height of a label [px]
+_PAPER, _INK = 248, (40, 40, 40)
 _WHOLE = 1.1  # of the way from the camera to the cover's farthest point
 
 
@@ -64,13 +65,19 @@ def ends(taken: tuple[Shot, ...]) -> tuple[Shot, ...]:
 
 
 def draw(
-    solution: Solution, taken: tuple[Shot, ...], *, rig: Rig, camera: Camera
+    solution: Solution, taken: tuple[Shot, ...], *, camera: Camera, rig: Rig | None = None
 ) -> Iterator[Pixels]:
-    """Render shots, each with its stage and time written below, (h, w, 3) uint8."""
+    """Draw shots, each with its stage and time written below, (h, w, 3) uint8.
+
+    As clay; with a rig, rendered in their own materials, which takes some ten times as long.
+    """
     view = _far_enough(camera, taken)
     for shot in taken:
         state = dataclasses.replace(solution, positions=shot.positions)
-        picture = pbr.render(state, rig=rig, camera=view, quality="draft").to_srgb()
+        if rig is None:
+            picture = pbr.sketch(state, camera=view)
+        else:
+            picture = pbr.render(state, rig=rig, camera=view, quality="draft").to_srgb()
         yield _labelled(picture, f"{shot.stage}, {shot.time:.2f} s")
 
 
@@ -78,7 +85,8 @@ def strip(pictures: list[Pixels], *, columns: int = 3) -> Pixels:
     """Lay pictures of one size out in rows."""
     height, width, _ = pictures[0].shape
     rows = -(-len(pictures) // columns)
-    sheet = np.zeros((rows * height, min(columns, len(pictures)) * width, 3), dtype=np.uint8)
+    size = (rows * height, min(columns, len(pictures)) * width, 3)
+    sheet = np.full(size, _PAPER, dtype=np.uint8)
     for k, picture in enumerate(pictures):
         y, x = divmod(k, columns)
         sheet[y * height : (y + 1) * height, x * width : (x + 1) * width] = picture
@@ -90,17 +98,18 @@ def film(
     folder: Path,
     out: Path,
     *,
-    rig: Rig,
     camera: Camera,
+    rig: Rig | None = None,
     width: int = 480,
-    seconds: float = 6.0,
-    most: int = 24,
+    seconds: float = 5.0,
+    most: int = 30,
 ) -> tuple[Path, Path]:
     """Write ``timeline.png``, a picture per stage, and ``timeline.gif``, and return their paths.
 
     Parameters
     ----------
     folder : where the stages of the solution were kept
+    rig : lights of the picture per stage; without it that is drawn as clay, as the animation is
     width : of one picture [px]; the height follows from the camera
     seconds : the animation lasts
     most : pictures in the animation, spread evenly over the run
@@ -110,11 +119,11 @@ def film(
         camera, size=(width, round(width * camera.size[1] / camera.size[0]))
     )
     still, moving = out / "timeline.png", out / "timeline.gif"
-    pictures = list(draw(solution, ends(taken), rig=rig, camera=small))
+    pictures = list(draw(solution, ends(taken), camera=small, rig=rig))
     write_bytes(still, png(strip(pictures)))
     every = np.unique(np.linspace(0, len(taken) - 1, min(most, len(taken))).round().astype(int))
     chosen = tuple(taken[k] for k in every)
-    io.write_animation(list(draw(solution, chosen, rig=rig, camera=small)), moving, seconds=seconds)
+    io.write_animation(list(draw(solution, chosen, camera=small)), moving, seconds=seconds)
     return still, moving
 
 
@@ -155,9 +164,9 @@ def _far_enough(camera: Camera, taken: tuple[Shot, ...]) -> Camera:
 
 def _labelled(picture: Pixels, text: str) -> Pixels:
     """Write a line below a picture."""
-    sheet = np.zeros((picture.shape[0] + _LABEL, *picture.shape[1:]), dtype=np.uint8)
+    sheet = np.full((picture.shape[0] + _LABEL, *picture.shape[1:]), _PAPER, dtype=np.uint8)
     sheet[: len(picture)] = picture
     image = Image.fromarray(sheet)
     font = ImageFont.load_default(size=16)
-    ImageDraw.Draw(image).text((8, len(picture) + 5), text, fill=(225, 225, 225), font=font)
+    ImageDraw.Draw(image).text((8, len(picture) + 5), text, fill=_INK, font=font)
     return np.asarray(image)
