@@ -144,7 +144,7 @@ def test_glb_carries_maps_to_the_millimetre(tmp_path):
     packed = np.asarray(material.metallicRoughnessTexture)
     assert (packed[..., 1] == pixels["roughness"]).all()
     assert packed.shape[:2] == (4, 8)
-    assert mesh.visual.uv == pytest.approx(a.cover.uv[4:], abs=1e-7)
+    assert mesh.visual.uv == pytest.approx(a.cover.rest[4:], abs=1e-7)
 
     # Where a pattern point lies in a picture, from the top left, by the extension's formula.
     infos = (numbers["baseColorTexture"], numbers["metallicRoughnessTexture"])

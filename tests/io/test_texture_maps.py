@@ -8,6 +8,7 @@ import pytest
 from PIL import Image
 
 from scene_files import TEXT, write_two_panels
+from seatlook.errors import InputError
 from seatlook.io.material import materials_dir, read_material
 from seatlook.io.scene import load_scene
 from seatlook.io.texture_maps import LARGEST, map_files, read_texture_maps
@@ -266,3 +267,12 @@ def test_a_scene_shares_the_maps_of_a_material_and_counts_them_in_its_digest(tmp
     assert left is right
     save(tmp_path / "linen/linen_Color.png", colour(value=(10, 20, 30)))
     assert load_scene(path).digest != scene.digest
+
+
+def test_thread_of_a_scene(tmp_path):
+    path = write_two_panels(tmp_path, text=TEXT + '\n[thread]\ncolour = "#ff0000"\npitch_mm = 6\n')
+    thread = load_scene(path).thread
+    assert (thread.colour.tolist(), thread.pitch, thread.length) == ([1.0, 0.0, 0.0], 0.006, 0.004)
+    path = write_two_panels(tmp_path, text=TEXT + "\n[thread]\nlength_mm = 6\n")
+    with pytest.raises(InputError, match=r"thread.Thread.length: got 6 mm, expected at most"):
+        load_scene(path)

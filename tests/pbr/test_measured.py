@@ -167,6 +167,20 @@ def test_pattern_is_laid_in_millimetres_and_follows_the_stretch():
 
 
 @pytest.mark.render
+def test_pattern_lies_along_the_grain_of_the_panel():
+    """Cut across the cloth, the stripes run across as well."""
+    solution = sheet(flat, size=0.4, steps=8)
+    rest = solution.cover.rest[:, ::-1] * [1.0, -1.0]
+    turned = replace(solution, cover=replace(solution.cover, rest=rest))
+    look = Appearance(albedo=np.ones(3), f0=0.0, roughness=1.0, maps=stripes())
+    for one, axis in ((solution, 0), (turned, 1)):
+        camera = above(size=(40, 40), fov=8.0)
+        seen = Studio(one).render(look, rig=RIG, camera=camera, quality="T1").radiance[..., 1]
+        along, across = seen.mean(axis=axis).std(), seen.mean(axis=1 - axis).std()
+        assert along > 10 * across
+
+
+@pytest.mark.render
 def test_far_away_a_picture_has_the_mean_of_the_map_and_no_sparkle():
     noise = np.random.default_rng(5).integers(0, 255, (256, 256, 3))
     maps = texture(width=0.005, height=0.005, albedo=noise, normal=bumps(256, 1.0)[0])

@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 
 from pbr_scenes import GREY, above, flat, sheet
-from seatlook.model import Points, Rig, Stitching, sun
+from seatlook.errors import InputError
+from seatlook.model import Points, Rig, Stitching, Thread, sun
 from seatlook.pbr.kernels.stitch import relief
-from seatlook.pbr.studio import TOP_STITCH, Studio
+from seatlook.pbr.seam import pack_thread
+from seatlook.pbr.studio import Studio
 from seatlook.pbr.surface import drawn_surface
 
+TOP_STITCH = pack_thread(Thread())
 RIG = Rig(name="noon", lights=(sun(elevation_deg=80, azimuth_deg=0),))
 
 
@@ -99,3 +102,34 @@ def test_stitches_show_at_their_pitch():
     spectrum = np.abs(np.fft.rfft((column - column.mean()) * np.hanning(600)))
     seen = 2 * np.tan(np.radians(2.5))
     assert spectrum.argmax() == pytest.approx(seen / TOP_STITCH.pitch, abs=1.0)
+
+
+def seen_thread(**change):
+    """Middle of a stitch [share of the sheet's own radiance], in three colours."""
+    studio = Studio(sewn(gap=0.0), thread=Thread(**change))
+    fine = above(distance=0.3, size=(40, 40), fov=1.0, at=(0.005, 0.0025, 0.0))
+    stitch = studio.render(GREY, rig=RIG, camera=fine).radiance[19:21, 19:21].mean(axis=(0, 1))
+    plain = studio.render(GREY, rig=RIG, camera=above(size=(8, 8), fov=1.0, at=(0.03, 0.03, 0.0)))
+    return stitch / plain.radiance.mean(axis=(0, 1))
+
+
+def test_thread_has_its_own_colour():
+    red = seen_thread(colour=np.array([0.5, 0.05, 0.02]))
+    assert red == pytest.approx([1.0, 0.1, 0.04], rel=0.25)
+    assert red[0] / red[1] == pytest.approx(10.0, rel=0.1)
+    tonal = seen_thread()
+    assert tonal == pytest.approx(np.full(3, 1.06), rel=0.1)
+
+
+def test_plain_seam_has_neither_stitch_nor_hole():
+    assert seen_thread(width=0.0) == pytest.approx(np.ones(3), rel=0.01)
+    for along in (0.0, 0.0025):
+        away, onward, share, covered = relief(pack_thread(Thread(width=0.0)), 0.005, along, 1e-5)
+        assert (onward, covered) == (0.0, 0.0)
+        assert share == pytest.approx(1.0, abs=1e-3)
+        assert away < 0.02
+
+
+def test_stitch_longer_than_its_pitch():
+    with pytest.raises(InputError, match=r"Thread.length: got 6 mm, expected at most the pitch, 5"):
+        Thread(length=0.006)

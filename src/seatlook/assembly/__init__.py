@@ -67,6 +67,7 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
         hem=hem_of(builder, scene, uv, faces) if scene.hem and scene.pattern.seams else None,
         stages=scene.stages,
         foam=scene.foam,
+        thread=scene.thread,
         element_size=float(mesh.edge_lengths(uv, faces).mean()),
         seed=seed,
         scene_digest=scene.digest,

@@ -16,6 +16,7 @@ from seatlook.io._schema import (
     Texts,
 )
 from seatlook.io._views import CAMERA, RIG
+from seatlook.io.colour import Colour
 from seatlook.model.cover import RAMPS
 from seatlook.model.scene import MEASURES, SCORE_MEASURES
 
@@ -45,6 +46,13 @@ KEYS: dict[str, Kind] = {
             "curves": Text(),
         },
         required=True,
+    ),
+    "design": Table(
+        {
+            "file": Text(),
+            "unit": Text(choices=("mm", "m"), default="mm"),
+            "side": Text(choices=("middle", "visible"), default="middle"),
+        }
     ),
     "mesh": Table(
         {
@@ -109,6 +117,15 @@ KEYS: dict[str, Kind] = {
     "rig": Rows(Table(RIG), required=True),
     "camera": Table(CAMERA),
     "gallery": Table({"textures": Texts(or_one=True, default=(AS_BUILT,))}),
+    "thread": Table(
+        {
+            "colour": Colour(),
+            "offset_mm": Number(low=0, high=20, scale=MM, default=5.0),
+            "pitch_mm": Number(above=0, high=50, scale=MM, default=5.0),
+            "length_mm": Number(above=0, high=50, scale=MM, default=4.0),
+            "width_mm": Number(low=0, high=5, scale=MM, default=0.9),
+        }
+    ),
     "zones": Table(
         {
             "box": Rows(

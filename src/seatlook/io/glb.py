@@ -26,9 +26,10 @@ def write_glb(solution: Solution, indices: WrinkleMap, path: Path) -> None:
 
     The custom attributes ``_W2``, ``_W_STRETCH`` and ``_W_COMPRESSION`` are of the vertices:
     means over the faces around them in their own panel, weighted by rest area. Texture coordinates
-    are pattern coordinates in metres, v upwards once read; KHR_texture_transform scales them to the
-    maps. Sheen and coat are written as KHR_materials_sheen and KHR_materials_clearcoat; a grain
-    by formula only where it has been baked into maps.
+    are those of the flat panel in metres, u along the warp, v upwards once read;
+    KHR_texture_transform scales them to the maps. Sheen and coat are written as
+    KHR_materials_sheen and KHR_materials_clearcoat; a grain by formula only where it has been
+    baked into maps.
     """
     cover = solution.cover
     looks = {material.name: material.appearance for material in cover.materials}
@@ -44,7 +45,7 @@ def write_glb(solution: Solution, indices: WrinkleMap, path: Path) -> None:
             vertices=solution.positions[used][:, [0, 2, 1]] * [1.0, 1.0, -1.0],
             faces=faces,
             process=False,
-            visual=_surface(uv=cover.uv[used], material=surfaces[material.name]),
+            visual=_surface(uv=cover.rest[used], material=surfaces[material.name]),
         )
         for key, values in (
             ("_W2", indices.w2),

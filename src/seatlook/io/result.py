@@ -37,6 +37,7 @@ from seatlook.model import (
     Stage,
     Stitching,
     TextureMaps,
+    Thread,
 )
 
 FORMAT = "seatlook result"
@@ -46,7 +47,7 @@ _TYPES: dict[str, type] = {
     t.__name__: t
     for t in (
         Anchor, Appearance, Cover, Curve, Fabric, Foam, FoamMaterial, Hem, Material, Points,
-        Solution, Stage, Stitching, TextureMaps,
+        Solution, Stage, Stitching, TextureMaps, Thread,
     )
 }  # fmt: skip
 

@@ -23,15 +23,18 @@ from seatlook.io.dxf import SMALLEST_NOTCH
 from seatlook.io.material import material_path, read_foam_material, read_material
 from seatlook.io.mesh import read_foam
 from seatlook.io.seams import read_pattern
+from seatlook.io.surface import read_surface
 from seatlook.io.texture_maps import map_files
 from seatlook.model import (
     Appearance,
+    Design,
     FloatArray,
     Foam,
     Material,
     Pattern,
     Pose,
     Scene,
+    Thread,
 )
 
 # Literal eq. (1) halves the curvature of a free fold, so its threshold is half as well [1/m].
@@ -73,7 +76,7 @@ class _Reader:
 
     def scene(self) -> Scene:
         row, document = self.row, self.document
-        pattern, foam = self.pattern(), self.foam()
+        pattern, foam, design = self.pattern(), self.foam(), self.design()
         boxes = make_boxes(document, row["zones"]["box"], pattern)
         parts: dict[str, Any] = {
             "materials": self.materials(pattern),
@@ -89,6 +92,8 @@ class _Reader:
         check_wires(document, row, pattern, foam)
         check_overlap(document, pattern, parts["placement"])
         check_hem(document, pattern, row["hem"])
+        with document.blame(("thread",)):
+            parts["thread"] = _thread(row["thread"])
         document.finish()
         curvature = row["wrinkle"]["curvature"]
         return Scene(
@@ -98,6 +103,7 @@ class _Reader:
             pattern=cast("Pattern", pattern),
             foam=cast("Foam", foam),
             boxes=boxes,
+            design=design,
             hem=row["hem"],
             element_size=row["mesh"]["element_size_mm"],
             element_sizes=MappingProxyType(
@@ -180,6 +186,18 @@ class _Reader:
             self.document.note(("foam",), error)
             return None
 
+    def design(self) -> Design | None:
+        row = self.row["design"]
+        path = self.file(("design", "file"), row["file"])
+        if path is None or row["unit"] is None:
+            return None
+        try:
+            drawn = read_surface(path, unit=row["unit"])
+        except InputError as error:
+            self.document.note(("design",), error)
+            return None
+        return Design(**drawn._asdict(), visible=row["side"] == "visible")
+
     def material_file(self, key: Key, name: str) -> Path | None:
         try:
             path = material_path(name, beside=self.document.file.parent)
@@ -260,6 +278,10 @@ class _Reader:
             return None
         u, v = (_AXES[axis] for axis in row["axes"])
         return np.column_stack([u, v, np.cross(u, v)])
+
+
+def _thread(row: dict[str, Any]) -> Thread:
+    return Thread(**{key.removesuffix("_mm"): v for key, v in row.items() if v is not None})
 
 
 def _centre(foam: Foam | None) -> FloatArray:

@@ -26,9 +26,10 @@ from seatlook.model.light import (
 )
 from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
-from seatlook.model.scene import Frame, Hook, Limit, Pose, Scene, ZoneBox
+from seatlook.model.scene import Design, Frame, Hook, Limit, Pose, Scene, ZoneBox
 from seatlook.model.shells import ShellResult, Shells, ShellState
 from seatlook.model.texture import TextureMaps
+from seatlook.model.thread import Thread
 
 __all__ = [
     "LIGHTS",
@@ -38,6 +39,7 @@ __all__ = [
     "Camera",
     "Cover",
     "Curve",
+    "Design",
     "Edge",
     "Fabric",
     "FloatArray",
@@ -65,6 +67,7 @@ __all__ = [
     "Stage",
     "Stitching",
     "TextureMaps",
+    "Thread",
     "WrinkleMap",
     "ZoneBox",
     "booth",

@@ -13,6 +13,7 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.model._check import FloatArray, IntArray, floats, ints
 from seatlook.model.material import Foam, Material
+from seatlook.model.thread import Thread
 
 Status = Literal["converged", "not converged"]
 
@@ -234,6 +235,7 @@ class Cover:
     hem: Hem | None = None
     stages: tuple[Stage, ...] = ()
     foam: Foam | None = None
+    thread: Thread = field(default_factory=Thread)
     element_size: float
     seed: int = 0
     scene_digest: str = ""

@@ -10,11 +10,12 @@ from typing import Literal
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.model._check import FloatArray, floats, positive
+from seatlook.model._check import FloatArray, IntArray, floats, ints, positive
 from seatlook.model.cover import Stage
 from seatlook.model.light import Camera, Rig
 from seatlook.model.material import Appearance, Foam, Material
 from seatlook.model.pattern import Pattern
+from seatlook.model.thread import Thread
 
 CurvatureMode = Literal["paper", "tensor"]
 
@@ -108,6 +109,29 @@ class Limit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Design:
+    """The shape that the finished cover is to have.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64 [m]; faces : (m, 3) int64, normals outward; need not be closed
+    panel : (m,) int64, index into ``panel_names``; two panels share the vertices of their seam
+    visible : whether it is the visible side that was drawn, not the middle of the cover
+    """
+
+    vertices: FloatArray
+    faces: IntArray
+    panel: IntArray
+    panel_names: tuple[str, ...]
+    visible: bool = False
+
+    def __post_init__(self) -> None:
+        floats(self, "vertices", None, 3)
+        ints(self, "faces", None, 3, below=len(self.vertices))
+        ints(self, "panel", len(self.faces), below=len(self.panel_names))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
     """Everything a run needs, checked and in SI units.
 
@@ -116,6 +140,7 @@ class Scene:
     digest : sha256 of the scene file and of every file it names
     materials : panel name -> Material
     placement : panel name -> Pose; a panel without one gets an automatic pose
+    design : what the finished shape is compared with, if given
     hem : whether seam allowances are folded inward; if not, seams are free hinges
     element_sizes : panel name -> float [m]     of panels that are meshed finer or coarser
     element_size : float [m]; smallest_notch : float [m], below which reading closed cuts
@@ -140,7 +165,9 @@ class Scene:
     )
     boxes: tuple[ZoneBox, ...] = ()
     limits: tuple[Limit, ...] = ()
+    design: Design | None = None
     hem: bool = False
+    thread: Thread = field(default_factory=Thread)
     element_size: float
     element_sizes: MappingProxyType[str, float] = field(
         default_factory=lambda: MappingProxyType({})

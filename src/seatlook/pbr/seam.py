@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from seatlook.model import Cover, FloatArray, IntArray
+from seatlook.model import Cover, FloatArray, IntArray, Thread
+from seatlook.pbr.kernels import stitch
 from seatlook.pbr.subdivision import Refined, boundary_edges
 
 # Distance [m] from a seam up to which its thread and groove are drawn.
@@ -34,6 +35,24 @@ class SewnEdges:
 
     def __len__(self) -> int:
         return len(self.start)
+
+
+# Share of white in a thread that has the panel's own colour.
+_LIGHTER = 0.06
+
+
+def pack_thread(thread: Thread) -> stitch.Thread:
+    """Top stitch as the kernels take it."""
+    own = thread.colour is not None
+    red, green, blue = np.ones(3) if thread.colour is None else thread.colour
+    return stitch.Thread(
+        thread.offset,
+        thread.pitch,
+        thread.length,
+        thread.width,
+        (float(red), float(green), float(blue)),
+        1.0 if own else _LIGHTER,
+    )
 
 
 def sewn_edges(cover: Cover, refined: Refined, uv: FloatArray) -> SewnEdges:

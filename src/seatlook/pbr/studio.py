@@ -13,25 +13,23 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError, RenderError, did_you_mean
-from seatlook.model import Appearance, Camera, FloatArray, Light, Rig, Solution
+from seatlook.model import Appearance, Camera, FloatArray, Light, Rig, Solution, Thread
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
 from seatlook.pbr.foam import FOAM
 from seatlook.pbr.kernels import bvh, light, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
-from seatlook.pbr.kernels.stitch import Thread
 from seatlook.pbr.measured import load_maps, map_sets, mean_albedo
 from seatlook.pbr.picture import Image
 from seatlook.pbr.quality import Quality, quality_named, quality_within
 from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, sky_levels, white_of
+from seatlook.pbr.seam import pack_thread
 from seatlook.pbr.surface import Surface, drawn_surface, neighbour_mean
 from seatlook.pbr.tables import load_tables
 from seatlook.pbr.texture import load_textures, texture_index
 
 Looks = Appearance | Mapping[str, Appearance] | None
 
-# Two visible rows, tonal thread of metric size 30; judgement.
-TOP_STITCH = Thread(offset=0.005, pitch=0.005, length=0.0040, width=0.0009, lighter=0.06)
 # A grey card of 18 % fills the background.
 _CARD = 0.18
 # Foam in front of the cover by less than this [m] is a coarse foam face that cuts through it.
@@ -51,11 +49,11 @@ class Studio:
     """
 
     def __init__(
-        self, solution: Solution, *, shading: Solution | None = None, thread: Thread = TOP_STITCH
+        self, solution: Solution, *, shading: Solution | None = None, thread: Thread | None = None
     ) -> None:
         offscreen_backend()
         self.solution = solution
-        self.thread = thread
+        self.thread = pack_thread(thread or solution.cover.thread)
         self.surface: Surface = drawn_surface(solution)
         if shading is not None:
             normals = drawn_surface(shading).mesh.normals

@@ -75,7 +75,7 @@ def drawn_surface(solution: Solution) -> Surface:
         raise RenderError("the cover has no faces to draw")
     levels = _levels(cover.element_size, len(cover.faces))
     refined = subdivide(
-        np.hstack([solution.positions, cover.uv]),
+        np.hstack([solution.positions, cover.rest]),
         cover.faces,
         levels=levels,
         corners=sharp_corners(cover.rest, cover.faces),

@@ -100,7 +100,7 @@ def _detail(mesh, look, material, f, hit, n, v):
     """Normal with relief and thread, base colour, roughness, metalness, light left by the holes."""
     b1, b2, t, plane, _, spread = hit
     roughness, metal, tint = material.roughness, material.metalness, (1.0, 1.0, 1.0)
-    share, lighter, kept = 1.0, 0.0, 1.0
+    share, own, kept = 1.0, 0.0, 1.0
     if material.texture >= 0 or material.maps >= 0 or material.perforation_diameter > 0.0:
         u, w = _pattern_at(mesh, f, b1, b2)
         width = t * spread / np.sqrt(max(0.05, dot(n, v)))
@@ -123,14 +123,14 @@ def _detail(mesh, look, material, f, hit, n, v):
         sa, so, left, covered = relief(look.thread, distance, arc, width)
         n = unit(tilt(n, away, onward, sa, so))
         share *= left
-        lighter = covered * look.thread.lighter
+        own = covered * look.thread.own
         roughness += covered * max(0.0, 0.6 - roughness)
-    share *= 1.0 - lighter
-    base = material.albedo
+    share *= 1.0 - own
+    base, thread = material.albedo, look.thread.colour
     colour = (
-        base[0] * tint[0] * share + lighter,
-        base[1] * tint[1] * share + lighter,
-        base[2] * tint[2] * share + lighter,
+        base[0] * tint[0] * share + own * thread[0],
+        base[1] * tint[1] * share + own * thread[1],
+        base[2] * tint[2] * share + own * thread[2],
     )
     return n, colour, roughness, metal, kept
 

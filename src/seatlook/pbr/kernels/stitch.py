@@ -13,15 +13,17 @@ from seatlook.pbr.kernels.surface import along, cross, dot, minus, row
 class Thread(NamedTuple):
     """Top stitch beside each seam, lengths in m.
 
-    ``offset`` from the seam line; ``pitch``: from hole to hole; ``length, width`` of one stitch;
-    ``lighter``: share of the way from the panel's colour to white that the thread's colour lies.
+    ``offset`` from the seam line; ``pitch``: from hole to hole; ``length, width`` of one stitch,
+    width 0 for none; ``colour``: linear, of which the thread has the share ``own`` and the panel's
+    for the rest.
     """
 
     offset: float
     pitch: float
     length: float
     width: float
-    lighter: float
+    colour: tuple[float, float, float]
+    own: float
 
 
 # Depth [m] and width [m] of the roll into the seam and of the line the stitches press in.
@@ -81,6 +83,9 @@ def relief(thread, distance, arc, width):
     the sample covered by thread.
     """
     roll = np.exp(-distance / _ROLL_WIDTH)
+    if thread.width == 0.0:
+        share = 1.0 - 0.65 * np.exp(-distance / 0.0006)
+        return _ROLL_DEPTH / _ROLL_WIDTH * roll, 0.0, share, 0.0
     x = (distance - thread.offset) / _PRESS_WIDTH
     press = np.exp(-0.5 * x * x)
     away = _ROLL_DEPTH / _ROLL_WIDTH * roll + _PRESS_DEPTH / _PRESS_WIDTH * x * press

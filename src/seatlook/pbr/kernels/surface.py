@@ -14,8 +14,9 @@ from seatlook.pbr.kernels import leaf
 class Mesh(NamedTuple):
     """The drawn surface: ``vertices, normals, warp`` (n, 3), ``uv`` (n, 2), ``faces`` (m, 3).
 
-    ``warp`` is the unit direction of the first pattern coordinate; ``panel`` (m,) picks the
-    material; ``seam`` (n, 2) [m]: distance from the seam and length along it, infinite elsewhere.
+    ``uv`` [m] lie in the flat panel, the first along the warp, whose unit direction is ``warp``;
+    ``panel`` (m,) picks the material; ``seam`` (n, 2) [m]: distance from the seam and length along
+    it, infinite elsewhere.
     """
 
     vertices: npt.NDArray[np.float64]
