@@ -86,3 +86,16 @@ def distance_to_polyline(points: FloatArray, line: FloatArray) -> FloatArray:
     along = np.clip((offset * step).sum(axis=2) / length2, 0.0, 1.0)
     gap = offset - along[..., None] * step
     return np.asarray(np.sqrt((gap**2).sum(axis=2)).min(axis=1))
+
+
+def quantile(values: FloatArray, weight: FloatArray, share: float) -> float:
+    """Return the smallest value with at least ``share`` of the weight at or below it.
+
+    Examples
+    --------
+    >>> quantile(np.array([5.0, 0.0, 1.0]), np.array([0.02, 0.9, 0.08]), 0.95)
+    1.0
+    """
+    order = np.argsort(values, kind="stable")
+    reached = np.cumsum(weight[order]) / weight.sum()
+    return float(values[order][min(int(np.searchsorted(reached, share)), len(values) - 1)])

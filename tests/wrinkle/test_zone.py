@@ -8,7 +8,7 @@ from seatlook.wrinkle import zone
 from wrinkle_samples import shaped, wave
 
 
-def testquantile_counts_area_not_faces():
+def test_quantile_counts_area_not_faces():
     values, weight = np.array([0.0, 1.0, 5.0]), np.array([0.90, 0.08, 0.02])
     assert zone.quantile(values, weight, 0.95) == 1.0
     assert zone.quantile(values, weight, 0.99) == 5.0

@@ -18,6 +18,7 @@ Unit = Literal["mm", "m"]
 
 METRES: dict[Unit, float] = {"mm": 1e-3, "m": 1.0}
 SMALLEST_M, LARGEST_M = 0.05, 3.0
+_SAME_M = 1e-6
 
 
 class GroupedMesh(NamedTuple):
@@ -38,7 +39,8 @@ class GroupedMesh(NamedTuple):
 def read_surface(path: Path, *, unit: Unit) -> GroupedMesh:
     """Read a design surface: an OBJ file in which ``g NAME`` names the panel of the next faces.
 
-    Polygons are cut into fans. The surface need not be closed.
+    Polygons are cut into fans. The surface need not be closed. Panels that were written with
+    corners of their own share them again where they agree within 1 um.
 
     Raises
     ------
@@ -122,12 +124,23 @@ class _ObjReader:
         if not self.faces:
             raise InputError.single("f", got="no face", expected="faces", file=self.path)
         used = sorted(set(self.panel))
+        vertices, corner = _welded(scale * np.array(self.vertices))
         return GroupedMesh(
-            vertices=scale * np.array(self.vertices),
-            faces=np.array(self.faces, dtype=np.int64),
+            vertices=vertices,
+            faces=corner[np.array(self.faces, dtype=np.int64)],
             panel=np.searchsorted(used, self.panel).astype(np.int64),
             panel_names=tuple(self.names[i] for i in used),
         )
+
+
+def _welded(vertices: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return the places (k, 3) of vertices, in order of appearance, and the place of each (n,)."""
+    cells = np.round(vertices / _SAME_M).astype(np.int64)
+    _, first, index = np.unique(cells, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(first), dtype=np.int64)
+    rank[order] = np.arange(len(first))
+    return vertices[first[order]], rank[index.reshape(-1)]
 
 
 def write_surface(mesh: GroupedMesh, path: Path) -> None:

@@ -9,16 +9,18 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.model import FloatArray, Solution
 from seatlook.solver.distance import distance_field
+from seatlook.zones import quantile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ZoneStandoff:
-    """How far a zone stands off the foam [m], weighted by rest area; below 0 it is pressed in.
+    """How far a zone is off [m], from the foam or its design, weighted by rest area.
 
     Parameters
     ----------
-    area : float [m2]      with a standoff
+    area : float [m2]      with a known distance
     measured : float       share of the zone's area that this is
+    p95 : float            95 % of the area are off by no more than this, to either side
     """
 
     zone: str
@@ -26,6 +28,7 @@ class ZoneStandoff:
     measured: float
     mean: float
     rms: float
+    p95: float
     lowest: float
     highest: float
 
@@ -55,7 +58,7 @@ def standoff(solution: Solution) -> FloatArray:
 
 
 def zone_standoff(solution: Solution, off: FloatArray) -> tuple[ZoneStandoff, ...]:
-    """Sum the standoff (m,) [m] up over every zone where it is known."""
+    """Sum the distances (m,) [m] of the faces up over every zone, where they are known."""
     cover = solution.cover
     known = np.isfinite(off)
     rows = []
@@ -72,6 +75,7 @@ def zone_standoff(solution: Solution, off: FloatArray) -> tuple[ZoneStandoff, ..
                 measured=float(area.sum() / cover.rest_area[inside].sum()),
                 mean=float(np.average(value, weights=area)),
                 rms=float(np.sqrt(np.average(value**2, weights=area))),
+                p95=quantile(np.abs(value), area, 0.95),
                 lowest=float(value.min()),
                 highest=float(value.max()),
             )

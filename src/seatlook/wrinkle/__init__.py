@@ -38,7 +38,8 @@ from seatlook.wrinkle.texture import (
     distortion_table,
 )
 from seatlook.wrinkle.worst import Wrinkle, section_across, worst_wrinkles
-from seatlook.wrinkle.zone import ZoneRow, map_top, quantile, zone_table
+from seatlook.wrinkle.zone import ZoneRow, map_top, zone_table
+from seatlook.zones import quantile
 
 __all__ = [
     "DEAD_BAND",

@@ -9,7 +9,7 @@ import numpy as np
 
 from seatlook.kinematics import deformation_gradient
 from seatlook.model import FloatArray, Solution
-from seatlook.wrinkle.zone import quantile
+from seatlook.zones import quantile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from seatlook.model import FloatArray, Solution, WrinkleMap
 from seatlook.wrinkle.recovery import recovery_error
+from seatlook.zones import quantile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,16 +96,3 @@ def _net_figures(net: FloatArray, weight: FloatArray) -> dict[str, float]:
 
 def _mean(values: FloatArray, weight: FloatArray) -> float:
     return float(values @ weight / weight.sum())
-
-
-def quantile(values: FloatArray, weight: FloatArray, share: float) -> float:
-    """Return the smallest value with at least ``share`` of the weight at or below it.
-
-    Examples
-    --------
-    >>> quantile(np.array([5.0, 0.0, 1.0]), np.array([0.02, 0.9, 0.08]), 0.95)
-    1.0
-    """
-    order = np.argsort(values, kind="stable")
-    reached = np.cumsum(weight[order]) / weight.sum()
-    return float(values[order][min(int(np.searchsorted(reached, share)), len(values) - 1)])
