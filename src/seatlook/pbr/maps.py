@@ -16,7 +16,8 @@ from seatlook.pbr.picture import Picture
 from seatlook.pbr.studio import Studio, eye_of, studio
 
 FACTOR = 2  # samples per pixel and axis
-_PAPER, _INK, _BARE = 250, (30, 30, 30), 205
+# The surround of pictures as well, so that map and picture lie over each other without a glare.
+_PAPER, _INK, _BARE = 97, (242, 242, 242), 205
 _SEQUENTIAL = ("viridis", "cividis", "magma")
 COLORMAPS = ("diverging", *_SEQUENTIAL)
 
