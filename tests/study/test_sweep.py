@@ -7,8 +7,6 @@ import json
 import os
 import random
 import signal
-import subprocess
-import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -16,26 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scene_files import write_two_panels
 from seatlook.cli import run
 from seatlook.errors import InputError
 from seatlook.io.sweep import read_sweep
 from seatlook.study import cell
 from seatlook.study.cell import Cell, plan, run_cell
 from seatlook.study.sweep import run_cluster, run_local, shard, unfinished
-
-SEEDS = 'schema = 1\nscene = "scene.toml"\n[axis]\n"mesh.seed" = [{}]\n'
-
-
-def seeds(folder: Path, count: int) -> tuple[Cell, ...]:
-    write_two_panels(folder)
-    text = SEEDS.format(", ".join(map(str, range(count))))
-    (folder / "sweep.toml").write_text(text)
-    return plan(read_sweep(folder / "sweep.toml"))
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {p.name: p.read_bytes() for p in sorted(folder.iterdir()) if p.is_file()}
+from sweep_runs import children, contents, kill_and_run_again, seeds, start_sweep, wait_for
 
 
 @pytest.fixture(scope="module")
@@ -118,22 +103,33 @@ def test_a_cell_whose_worker_dies_is_told_from_the_others(tmp_path, monkeypatch)
 def test_killed_at_any_moment_and_run_again_nothing_is_lost_or_doubled(four, tmp_path):
     cells, expected = four
     seeds(tmp_path, 4)
-    words = [sys.executable, "-m", "seatlook", "sweep", "sweep.toml", "--out", "out", "--quiet"]
-    process = subprocess.Popen([*words, "--workers", "2"], cwd=tmp_path, stdout=subprocess.DEVNULL)
+
+    def working(folder: Path) -> bool:
+        time.sleep(0.2 * random.random())
+        return bool(list(folder.glob("*.npy")))
+
+    _, said = kill_and_run_again(tmp_path, before=working)
+    assert contents(tmp_path / "out" / "cells") == expected
+    assert len(said.splitlines()) == 1 + len(cells)
+
+
+@pytest.mark.parametrize("group", [True, False], ids=["keyboard", "one process"])
+def test_an_interrupted_sweep_ends_at_once_and_says_how_to_go_on(four, tmp_path, group):
+    cells, expected = four
+    seeds(tmp_path, 40)
+    process = start_sweep(tmp_path, "--workers", "2")
     folder = tmp_path / "out" / "cells"
-    wait_for(lambda: folder.is_dir() and list(folder.glob("*.npy")))
-    time.sleep(random.random())
+    wait_for(lambda: list(folder.glob("*.json")))
     workers = children(process.pid)
-    process.kill()
-    process.wait()
-    # Workers end by themselves when the process that started them is gone.
+    (os.killpg if group else os.kill)(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert said.endswith("the same command again goes on where it was: what is done is kept\n")
+    assert "Traceback" not in said
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in workers))
-    before = {p.name: p.stat().st_mtime_ns for p in folder.glob("*.json")}
-    again = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert again.returncode == 0, again.stderr
-    assert contents(folder) == expected
-    assert {n: (folder / n).stat().st_mtime_ns for n in before} == before
-    assert len(again.stdout.splitlines()) == 1 + len(cells)
+    assert 0 < len(list(folder.glob("*.json"))) < 30
+    assert not list(folder.glob("*.failed.json"))
+    assert contents(folder)[f"{cells[0].name}.json"] == expected[f"{cells[0].name}.json"]
 
 
 def test_a_cluster_gives_the_same_bytes_though_a_worker_is_killed(four, tmp_path):
@@ -170,30 +166,3 @@ def test_halves_of_a_killed_run_are_removed(tmp_path):
     assert run_cell(one.name, one.spec, str(tmp_path)) == ""
     assert not half.exists()
     assert np.load(tmp_path / f"{one.name}.npy").dtype == np.float32
-
-
-@pytest.mark.validate
-def test_24_cells_by_one_two_and_a_cluster(tmp_path):
-    cells = seeds(tmp_path, 24)
-    distributed = importlib.import_module("distributed")
-    list(run_local(cells, tmp_path / "one"))
-    list(run_local(cells, tmp_path / "two", workers=2))
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-    ) as cluster:
-        list(run_cluster(cells, tmp_path / "dask", scheduler=cluster.scheduler_address))
-    one = contents(tmp_path / "one")
-    assert len(one) == 48
-    assert contents(tmp_path / "two") == one
-    assert contents(tmp_path / "dask") == one
-
-
-def children(pid: int) -> list[int]:
-    return [int(p) for p in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-
-
-def wait_for(holds, *, seconds: float = 90.0) -> None:
-    end = time.monotonic() + seconds
-    while not holds():
-        assert time.monotonic() < end
-        time.sleep(0.05)

@@ -8,22 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from scene_files import write_two_panels
-from seatlook.io.sweep import read_sweep
-from seatlook.study.cell import plan
 from seatlook.study.sweep import run_local
+from sweep_runs import seeds
 
 pytestmark = pytest.mark.bench
 
 
 def test_two_workers_against_one(tmp_path: Path):
     count = int(os.environ.get("SEATLOOK_CELLS", "24"))
-    write_two_panels(tmp_path)
-    seeds = ", ".join(map(str, range(count)))
-    (tmp_path / "sweep.toml").write_text(
-        f'schema = 1\nscene = "scene.toml"\n[axis]\n"mesh.seed" = [{seeds}]\n'
-    )
-    cells = plan(read_sweep(tmp_path / "sweep.toml"))
+    cells = seeds(tmp_path, count)
     rate = {}
     for workers in (1, 2):
         done = []

@@ -60,7 +60,7 @@ def run_local(
     folder.mkdir(parents=True, exist_ok=True)
     left, suspects, tries = list(cells), list[Cell](), Counter[str]()
     while batch := suspects[:1] or left:
-        alone, done = bool(suspects), set[str]()
+        alone, done, others = bool(suspects), set[str](), set(multiprocessing.active_children())
         with _one_thread(), _pool(1 if alone else workers) as pool:
             waiting = _submitted(pool, batch, folder)
             try:
@@ -73,6 +73,12 @@ def run_local(
                 # Cells are handed out in order: the one that killed its worker is among these.
                 suspects = suspects if alone else lost[:workers]
                 tries.update(c.name for c in lost if alone)
+            except BaseException:
+                # Interrupted: what is not finished is done by the next run, which can be soon.
+                pool.shutdown(wait=False, cancel_futures=True)
+                for worker in set(multiprocessing.active_children()) - others:
+                    worker.kill()
+                raise
         for cell in batch:
             if cell.name not in done and tries[cell.name] >= _ATTEMPTS:
                 done.add(cell.name)
