@@ -4,6 +4,7 @@ import pytest
 import fabrics
 import meshes
 import naive
+from morley import MorleySheet
 from seatlook.solver.bending import JUMP, Bending
 from seatlook.solver.curvature import recover_curvature
 from seatlook.solver.edgeslope import areas, edges_of, slope_rows
@@ -89,6 +90,22 @@ def test_only_rigid_motion_is_free(kind):
     assert abs(values[:3]).max() < 1e-9 * values[-1]
     # The softest mode of a free plate this size is a saddle: no spurious mode below it.
     assert values[3] > 1e-4 * values[-1]
+
+
+def test_sparse_morley_equals_its_dense_twin():
+    X, T = meshes.rectangle("uns", 1.0, 0.5, 0.2)
+    fabric = fabrics.isotropic(poisson=0.3)
+    reference = MorleySheet(X, T, fabric)
+    stiffness = np.tile(fabric.bending_matrix, (len(T), 1, 1))
+    K, n = reference.bending.stiffness().toarray(), len(X)
+    condensed = K[:n, :n] - K[:n, n:] @ np.linalg.solve(K[n:, n:], K[n:, :n])
+    twin = naive.morley_matrix(X, reference.edges, reference.area, stiffness)
+    np.testing.assert_allclose(condensed, twin, atol=1e-12 * abs(twin).max())
+    # A cylinder w = x^2 / 2: bending and tension exact.
+    slope = 0.5 * X[reference.edges.ends, 0].sum(axis=1) * reference.edges.normal[:, 0]
+    w = np.concatenate([0.5 * X[:, 0] ** 2, slope])
+    assert 0.5 * w @ K @ w == pytest.approx(0.5 * 0.5 * fabric.bending_warp)
+    assert w @ reference.stress_stiffness(np.diag([1.0, 0.0])) @ w == pytest.approx(0.5 / 3)
 
 
 @pytest.mark.parametrize("kind", meshes.KINDS)

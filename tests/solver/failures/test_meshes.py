@@ -8,6 +8,7 @@ from scipy.sparse.linalg import eigsh
 import fabrics
 import meshes
 from counter_examples import sheet_of
+from morley import MorleySheet
 from seatlook.errors import InvertedElementError
 from seatlook.solver import solve_sheet
 
@@ -19,16 +20,21 @@ def threshold(element, kind, per_wave, *, tension=0.0, bend=5e-5, bed=2e6, waves
     length = 2 * np.pi * (bend / bed) ** 0.25
     X, T = meshes.rectangle(kind, waves * length, 2 * length, length / per_wave, seed=seed)
     fabric = fabrics.isotropic(bend=bend)
-    sheet = sheet_of(element, X, T, fabric)
+    sheet = MorleySheet(X, T, fabric) if element == "morley" else sheet_of(element, X, T, fabric)
 
     def pulled(along, across):
+        size = max(abs(along), abs(across))
+        if element == "morley":
+            return sheet.stress_stiffness(np.diag([along, across]) / size)
         x = np.pad(X * [1 + along, 1 + across], ((0, 0), (0, 1)))
         matrix = sheet.membrane.hessian(x).tocsr()[2::3][:, 2::3]
-        return matrix / (1000.0 * max(abs(along), abs(across)))
+        return matrix / (1000.0 * size)
 
     springs = diags_array(sheet.mass / fabric.density * bed)
     stiff = sheet.bending.stiffness() + springs + tension * pulled(0.0, 1e-4)
-    inner = np.flatnonzero((X[:, 0] > 1e-9) & (X[:, 0] < X[:, 0].max() - 1e-9))
+    held = np.zeros(len(sheet.mass), dtype=bool)
+    held[: len(X)] = (X[:, 0] < 1e-9) | (X[:, 0] > X[:, 0].max() - 1e-9)
+    inner = np.flatnonzero(~held)
     top = eigsh(
         pulled(-1e-4, 0.0).tocsc()[inner][:, inner] * -1.0,
         k=1,
@@ -55,6 +61,13 @@ def test_four_valent_meshes(kind):
     assert abs(threshold("hinge", kind, 12)) > 0.05
     assert abs(threshold("patch6", kind, 12)) > 0.05
     assert abs(threshold("edgeslope", kind, 12)) < 0.03
+
+
+def test_reference_converges_under_tension():
+    """Morley's plate: second order, with slopes as unknowns beside the vertices."""
+    errors = [abs(threshold("morley", "uns", n, tension=2000.0)) for n in (6, 12)]
+    assert errors[1] < 0.01
+    assert errors[0] / errors[1] > 3.0
 
 
 def test_slivers():
