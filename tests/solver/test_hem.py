@@ -1,5 +1,7 @@
 """The folds of a hem carry bending moment across a seam, neither more nor less than they should."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from scipy.sparse import csc_array, csr_array
@@ -156,6 +158,24 @@ def test_moment_of_a_folded_sheet(angle):
         [np.where(far, np.cos(angle) * x, x), rest[:, 1], np.where(far, np.sin(angle) * x, 0.0)]
     )
     np.testing.assert_allclose(sheet.folds.moments(turned), 0.7 * np.sin(angle), rtol=1e-9)
+
+
+def test_matrix_of_the_minimiser_has_the_folds_and_bending_below_them():
+    """But not that of the rest, which would cost three times the entries."""
+    rest, faces, n = strips(0.02, 0.015)
+    fabric = fabrics.isotropic(bend=BEND, poisson=0.0)
+    bare = hem(rest, faces, n, 0.7)
+    over = np.abs(rest[faces, 0].mean(axis=1) - LENGTH / 2) < 0.02
+    covered = dataclasses.replace(bare, density=np.where(over, 0.5, 0.0))
+    for folds, some in ((bare, np.zeros(len(faces), dtype=bool)), (covered, over)):
+        sheet = ElasticSheet(rest, faces, np.zeros(len(faces)), [fabric], hem=folds)
+        extra = sheet.stiffness() - sheet.membrane.stiffness() - sheet.folds.matrix()
+        touched = np.flatnonzero(np.abs(extra).sum(axis=1) > 1e-9)
+        assert bool(len(touched)) == some.any()
+        full = sheet.stiffness(True) - sheet.membrane.stiffness() - sheet.across()
+        assert np.abs(full).max() < 1e-9
+        # A patch of bending reaches one ring of triangles beyond its own.
+        assert (np.abs(rest[touched, 0] - LENGTH / 2) < 0.02 + 3 * 0.02).all()
 
 
 def test_inner_edges_are_no_rim():

@@ -84,6 +84,11 @@ class ElasticSheet:
         )
         self.membrane = Membrane(self.edges, self._curvature, self.area, panel, self._fabrics)
         self.bending = Bending(self.edges, self._curvature, self.area, stiffness)
+        self._sewn: csc_array | None = None
+        if hem is not None and self.folds is not None:
+            below = stiffness * (hem.density > 0.0)[:, None, None]
+            doubled = Bending(self.edges, self._curvature, self.area, below)
+            self._sewn = csc_array(doubled.stiffness() + self.folds.matrix())
 
     @property
     def energies(self) -> tuple[Energy, ...]:
@@ -98,9 +103,15 @@ class ElasticSheet:
         return csc_array(self.bending.stiffness() + self.folds.matrix())
 
     def stiffness(self, include_bending: bool = False) -> csc_array:
-        """Constant scalar matrix (n, n) [N/m] that stands for the sheet in a prefactor."""
+        """Constant scalar matrix (n, n) [N/m] that stands for the sheet in a prefactor.
+
+        Folds are stiff beside ties, so they and what bends with them are always part of it;
+        bending elsewhere seldom pays for the entries that it adds.
+        """
         if include_bending:
             return csc_array(self.membrane.stiffness() + self.across())
+        if self._sewn is not None:
+            return csc_array(self.membrane.stiffness() + self._sewn)
         return self.membrane.stiffness()
 
     def curvatures(self, x: FloatArray) -> FloatArray:

@@ -88,8 +88,7 @@ class Process:
             max(f.bending_warp, f.bending_weft) / (k * cover.element_size**2)
             for f, k in zip(fabrics, tension, strict=True)
         )
-        # Folds and second layers are stiff beside ties: without them every step is too long.
-        self._bending_in_factor = cover.hem is not None or softness > _STIFF_BENDING
+        self._bending_in_factor = softness > _STIFF_BENDING
         self._mass: FloatArray = np.array(self.sheet.mass, dtype=np.float64)
         self.gravity = Gravity(self._mass)
         self.inertia = Inertia(self._mass, dt)
