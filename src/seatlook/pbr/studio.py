@@ -14,17 +14,18 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError, RenderError, did_you_mean
 from seatlook.model import Appearance, Camera, FloatArray, Light, Rig, Solution, Thread
+from seatlook.pbr.around import Surroundings
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
 from seatlook.pbr.foam import FOAM
-from seatlook.pbr.kernels import bvh, light, rays, shade, surface, tables
+from seatlook.pbr.kernels import bvh, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.measured import load_maps, map_sets, mean_albedo
 from seatlook.pbr.picture import Image
 from seatlook.pbr.quality import Quality, quality_named, quality_within
-from seatlook.pbr.rig import lux_at_seat, pack_lights, sky_colour, sky_levels, white_of
+from seatlook.pbr.rig import lux_at_seat, pack_lights, white_of
 from seatlook.pbr.seam import pack_thread
-from seatlook.pbr.surface import Surface, drawn_surface, neighbour_mean
+from seatlook.pbr.surface import Surface, drawn_surface
 from seatlook.pbr.tables import load_tables
 from seatlook.pbr.texture import load_textures, texture_index
 
@@ -36,8 +37,6 @@ _CARD = 0.18
 _COMPRESSED = 0.02
 # How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
 _OCCLUDER = 0.04
-# Share of the sky seen by what lies below the cover; judgement.
-_HIDDEN_SKY = 0.3
 
 
 class Studio:
@@ -60,19 +59,14 @@ class Studio:
             self.surface = replace(self.surface, mesh=self.surface.mesh._replace(normals=normals))
         self._cache: OrderedDict[Hashable, Any] = OrderedDict()
 
-    # Maps need none of these: they are made for the first picture.
-    @functools.cached_property
-    def _smooth(self) -> Callable[[FloatArray], FloatArray]:
-        cover = self.solution.cover
-        return neighbour_mean(cover.faces, len(self.solution.positions))
-
-    @functools.cached_property
-    def _gathering(self) -> surface.Mesh:
-        return _gathering(self.surface.coarse)
-
+    # Maps need neither: they are made for the first picture.
     @functools.cached_property
     def _bvh(self) -> bvh.Bvh:
         return bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
+
+    @functools.cached_property
+    def _surroundings(self) -> Surroundings:
+        return Surroundings(self.surface, self._bvh, self._kept)
 
     def render(
         self,
@@ -99,7 +93,7 @@ class Studio:
             ids,
             look,
             pack_lights(rig, level.factor),
-            self._around(rig, look.materials, level),
+            self._surroundings.light(rig, look, level, camera, ids),
             seen,
             level.factor,
             radiance,
@@ -178,42 +172,6 @@ class Studio:
             share,
         )
         return np.rint(255 * share).astype(np.uint8)
-
-    def _around(self, rig: Rig, materials: np.ndarray, level: Quality) -> light.Around:
-        """Sky and bounced light at every vertex, found at the solver's vertices."""
-        n, k = len(self.surface.mesh.vertices), self.surface.vertices
-        spread, mesh = self.surface.refined.spread, self._gathering
-        panorama = sky_levels(rig)
-        sky, sent, open_ = np.zeros((n, 3)), np.zeros((n, 3)), np.ones(n)
-        strata = level.strata or 8
-        hits = np.full((len(mesh.vertices), strata * strata), -1, dtype=np.int32)
-        if level.strata:
-            hits = self._kept(("hits", strata), lambda: self._hits(strata))
-        share = self._smooth((hits == -1).mean(axis=1)[:, None])
-        few_sky = share * rig.ambient * sky_colour(rig)
-        if len(panorama):
-            rays.sky_seen(mesh, hits, strata, panorama, few_sky)
-            few_sky = self._smooth(few_sky)
-        direct, few = np.empty(few_sky.shape), np.zeros(few_sky.shape)
-        rays.irradiance(self._bvh, mesh, pack_lights(rig), direct)
-        albedo = np.ascontiguousarray(materials["albedo"])
-        for _ in range(level.bounces):
-            rays.bounce(mesh, hits, albedo, direct + np.pi * (few_sky + few), few)
-            few = self._smooth(few)
-        sky[:k], sent[:k], open_[:k] = spread(few_sky), spread(few), spread(share)[:, 0]
-        # Of the sky below a seam, and where the foam is in sight, little is seen.
-        sky[k:] = _HIDDEN_SKY * few_sky.mean(axis=0)
-        open_[k:] = _HIDDEN_SKY
-        return light.Around(sky, sent, open_, panorama)
-
-    def _hits(self, strata: int) -> npt.NDArray[np.int32]:
-        """Solver's face that each vertex sees along each direction."""
-        mesh = self._gathering
-        hits = np.empty((len(mesh.vertices), strata * strata), dtype=np.int32)
-        rays.gather(self._bvh, mesh, strata, hits)
-        children = self.surface.faces // len(mesh.faces)
-        hits[hits >= self.surface.faces] = -2
-        return np.where(hits >= 0, hits // children, hits)
 
     def _look(self, appearance: Looks) -> shade.Look:
         cover = self.solution.cover
@@ -354,18 +312,6 @@ def _check(radiance: FloatArray, ids: np.ndarray, seen: np.ndarray, camera: Came
         raise RenderError(f"camera {camera.name}: the picture holds values that are not finite")
     if radiance.max() <= 0 and (seen[:, ids >= 0] > 0).any():
         raise RenderError(f"camera {camera.name}: the picture is black though a light reaches it")
-
-
-def _gathering(mesh: surface.Mesh) -> surface.Mesh:
-    """Mesh whose vertices are the points at which light is gathered."""
-    sides = np.stack([mesh.faces, mesh.faces[:, [1, 2, 0]]], axis=-1).reshape(-1, 2)
-    _, which, count = np.unique(np.sort(sides), axis=0, return_inverse=True, return_counts=True)
-    lone = np.flatnonzero(count[which.ravel()] == 1)
-    face = np.full(len(mesh.vertices), -1)
-    face[sides[lone].ravel()] = np.repeat(lone // 3, 2)
-    points = np.empty(mesh.vertices.shape)
-    rays.inset(mesh, face, points)
-    return mesh._replace(vertices=points)
 
 
 def _edge_width(light: Light, camera: Camera) -> int:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
 
 from seatlook.errors import RenderError
 from seatlook.model import FloatArray, IntArray, Solution
@@ -41,19 +39,9 @@ class Surface:
     coarse_faces: IntArray
 
     @property
-    def coarse(self) -> Mesh:
-        """The cover on the solver's own vertices and faces, with the refined normals."""
-        n = len(self.refined.points) - sum(map(len, self.refined.parents))
-        m, step = self.mesh, 4 ** len(self.refined.parents)
-        return Mesh(
-            m.vertices[:n],
-            m.normals[:n],
-            m.warp[:n],
-            m.uv[:n],
-            self.coarse_faces,
-            np.ascontiguousarray(m.panel[: self.faces : step]),
-            m.seam[:n],
-        )
+    def solved(self) -> int:
+        """How many of the vertices are the solver's; they come first."""
+        return len(self.refined.points) - sum(map(len, self.refined.parents))
 
     @property
     def cover_mesh(self) -> Mesh:
@@ -114,22 +102,6 @@ def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
     n[lost] = (0.0, 0.0, 1.0)
     length[lost] = 1.0
     return np.ascontiguousarray(n / length)
-
-
-def neighbour_mean(faces: IntArray, n: int, sweeps: int = 1) -> Callable[[FloatArray], FloatArray]:
-    """Average over a vertex and its neighbours, per panel: takes the noise off gathered light."""
-    pairs = np.stack([faces, faces[:, [1, 2, 0]]], axis=-1).reshape(-1, 2)
-    ones = np.ones(len(pairs))
-    beside = sparse.csr_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    matrix = (beside + beside.T + 2 * sparse.eye_array(n, format="csr")).tocsr()
-    total: FloatArray = np.asarray(matrix @ np.ones((n, 1)))
-
-    def mean(values: FloatArray) -> FloatArray:
-        for _ in range(sweeps):
-            values = np.asarray(matrix @ values) / total
-        return values
-
-    return mean
 
 
 def _levels(element_size: float, faces: int) -> int:

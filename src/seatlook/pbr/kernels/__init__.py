@@ -8,4 +8,4 @@ from numba import njit
 
 # For functions that allocate nothing: without it every array read from a named tuple is counted
 # in and out, which took two thirds of the time of a picture.
-leaf = functools.partial(njit, cache=True, _nrt=False)
+leaf = functools.partial(njit, cache=True, _nrt=False, error_model="numpy")

@@ -29,16 +29,19 @@ class Lights(NamedTuple):
 
 
 class Around(NamedTuple):
-    """What arrives from elsewhere, per vertex, as luminance equal from all open directions.
+    """What arrives from elsewhere, per vertex.
 
-    ``sky`` (n, 3) [cd/m2]: the share of the sky not covered; ``bounce`` (n, 3) [cd/m2]: what the
-    cover itself sends; ``open`` (n,): share of the sky not covered; ``panorama`` (r, h, w, 3)
-    [cd/m2]: sky as lobes of rising roughness see it, no levels where it is equal everywhere.
+    ``diffuse`` (n, 3) [cd/m2]: mean over the half-space, of sky and other faces; ``mirrored``
+    (n, 3) [cd/m2]: what other faces send into the lobe of the reflection that the eye sees;
+    ``open`` (n,): share of that lobe that sees the sky; ``even`` (3,) [cd/m2]: sky equal
+    everywhere; ``panorama`` (r, h, w, 3) [cd/m2]: sky as lobes of rising roughness see it, no
+    levels where it is even.
     """
 
-    sky: npt.NDArray[np.float64]
-    bounce: npt.NDArray[np.float64]
+    diffuse: npt.NDArray[np.float64]
+    mirrored: npt.NDArray[np.float64]
     open: npt.NDArray[np.float64]
+    even: npt.NDArray[np.float64]
     panorama: npt.NDArray[np.float64]
 
 

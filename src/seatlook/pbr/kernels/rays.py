@@ -23,7 +23,9 @@ from seatlook.pbr.kernels.surface import (
 )
 
 # Rays start this far [m] above the surface: above rounding, below any fold.
-_ABOVE = 2e-5
+ABOVE = 2e-5
+# What a ray meets other than the front of a face: the sky, what does not shine; or it is not sent.
+OPEN, DARK, UNSENT = -1, -2, -3
 _EMPTY, _HIDDEN, _AWAY, _LIT, _GRAZING = 0, 1, 2, 3, 4
 
 
@@ -45,7 +47,7 @@ def _to_disc(lights, k, p, a, b):
 @leaf()
 def _reaches(bvh, p, n, d, far, stack):
     """Whether a ray from ``p`` along ``d`` comes ``far``; ``n``: normal of the plane it leaves."""
-    side = _ABOVE if dot(n, d) > 0.0 else -_ABOVE
+    side = ABOVE if dot(n, d) > 0.0 else -ABOVE
     o = along(p, side, n)
     return not occluded(bvh, o[0], o[1], o[2], d[0], d[1], d[2], 0.0, far, stack)
 
@@ -183,25 +185,19 @@ def inset(mesh, face, out):
 
 
 @njit(cache=True)
-def irradiance(bvh, mesh, lights, out):
-    """Direct irradiance [lux] (n, 3) at every vertex, one ray per light."""
+def lit(bvh, points, normals, lights, out):
+    """Whether the middle of light k reaches point i, into ``out`` (k, n)."""
     stack = new_stack()
-    for i in range(len(out)):
-        out[i] = 0.0
-        p, n = row(mesh.vertices, i), row(mesh.normals, i)
-        for k in range(len(lights.near)):
-            l, e = arriving(lights, k, p)
-            c = dot(l, n)
-            if c <= 0.0:
-                continue
-            far = _to_disc(lights, k, p, 0.0, 0.0)[1]
-            if _reaches(bvh, along(p, 5 * _ABOVE, n), n, l, far, stack):
-                for q in range(3):
-                    out[i, q] += c * e[q]
+    for i in range(out.shape[1]):
+        p, n = row(points, i), row(normals, i)
+        o = along(p, 5 * ABOVE, n)
+        for k in range(len(out)):
+            l, far = _to_disc(lights, k, p, 0.0, 0.0)
+            out[k, i] = 1.0 if dot(l, n) > 0.0 and _reaches(bvh, o, n, l, far, stack) else 0.0
 
 
 @leaf()
-def _direction(n, i, q, strata):
+def direction(n, i, q, strata):
     """Direction q of strata^2 cosine-weighted ones around ``n``, turned per vertex i."""
     t, s = across(n)
     turn, shift = even(i, 0, 0), even(i, 1, 0)
@@ -211,49 +207,58 @@ def _direction(n, i, q, strata):
     return along(along((n[0] * up, n[1] * up, n[2] * up), r * np.cos(phi), t), r * np.sin(phi), s)
 
 
-@njit(cache=True)
-def sky_seen(mesh, hits, strata, panorama, out):
-    """Mean luminance (n, 3) of a panorama's smoothest level over the open directions."""
-    for i in range(len(hits)):
-        n = row(mesh.normals, i)
-        out[i] = 0.0
-        for q in range(strata * strata):
-            if hits[i, q] == -1:
-                seen = panorama_towards(panorama, 0.0, _direction(n, i, q, strata))
-                for k in range(3):
-                    out[i, k] += seen[k] / (strata * strata)
+@leaf()
+def face_met(bvh, o, d, faces, stack):
+    """Face in front of which a ray ends; ``OPEN``, or ``DARK`` at the back of a face.
 
-
-@njit(cache=True)
-def gather(bvh, mesh, strata, hits):
-    """What each vertex of ``mesh`` sees along strata^2 cosine-weighted directions.
-
-    ``hits`` (n, strata^2) int32: the face met, -1 for open, -2 for the back of a face.
+    Faces from ``faces`` on, below a seam, count as backs.
     """
-    stack = new_stack()
-    for i in range(len(hits)):
-        p, n = row(mesh.vertices, i), row(mesh.normals, i)
-        o = along(p, 10 * _ABOVE, n)
+    leaf, _, _, _ = nearest(bvh, o[0], o[1], o[2], d[0], d[1], d[2], 0.0, stack)
+    if leaf < 0:
+        return OPEN
+    f = bvh.face[leaf]
+    front = dot(cross(row(bvh.edge1, leaf), row(bvh.edge2, leaf)), d) < 0.0
+    return f if front and f < faces else DARK
+
+
+@njit(cache=True)
+def sky_seen(normals, which, hits, strata, panorama, out):
+    """Mean luminance (m, 3) of a panorama's smoothest level over the open directions."""
+    for r in range(len(hits)):
+        n = row(normals, which[r])
+        out[r] = 0.0
         for q in range(strata * strata):
-            d = _direction(n, i, q, strata)
-            leaf, _, _, _ = nearest(bvh, o[0], o[1], o[2], d[0], d[1], d[2], 0.0, stack)
-            if leaf < 0:
-                hits[i, q] = -1
-                continue
-            out = cross(row(bvh.edge1, leaf), row(bvh.edge2, leaf))
-            hits[i, q] = bvh.face[leaf] if dot(out, d) < 0.0 else -2
+            if hits[r, q] == OPEN:
+                seen = panorama_towards(panorama, 0.0, direction(n, which[r], q, strata))
+                for k in range(3):
+                    out[r, k] += seen[k] / (strata * strata)
+
+
+@njit(cache=True)
+def gather(bvh, faces, points, normals, which, strata, hits):
+    """What the vertices ``which`` see along strata^2 cosine-weighted directions, into ``hits``."""
+    stack = new_stack()
+    for r in range(len(which)):
+        i = which[r]
+        n = row(normals, i)
+        o = along(row(points, i), 10 * ABOVE, n)
+        for q in range(strata * strata):
+            hits[r, q] = face_met(bvh, o, direction(n, i, q, strata), faces, stack)
 
 
 @leaf()
-def bounce(mesh, hits, albedo, irradiances, out):
-    """Mean luminance (n, 3) that arrives from the faces met, Lambert with ``albedo`` (p, 3)."""
-    for i in range(hits.shape[0]):
-        out[i] = 0.0
+def bounce(mesh, hits, albedo, luminances, out):
+    """Mean luminance (m, 3) from the faces met, Lambert with ``albedo`` (p, 3).
+
+    ``luminances`` (n, 3): luminance that the vertices get.
+    """
+    for r in range(hits.shape[0]):
+        out[r] = 0.0
         for q in range(hits.shape[1]):
-            f = hits[i, q]
+            f = hits[r, q]
             if f < 0:
                 continue
             a, b, c = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
             for k in range(3):
-                mean = (irradiances[a, k] + irradiances[b, k] + irradiances[c, k]) / 3.0
-                out[i, k] += albedo[mesh.panel[f], k] * mean / (np.pi * hits.shape[1])
+                mean = (luminances[a, k] + luminances[b, k] + luminances[c, k]) / 3.0
+                out[r, k] += albedo[mesh.panel[f], k] * mean / hits.shape[1]

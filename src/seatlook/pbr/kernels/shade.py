@@ -58,7 +58,7 @@ class Look(NamedTuple):
 
 
 @leaf()
-def _towards_eye(n, v):
+def towards_eye(n, v):
     """Normal bent just enough to face the eye, which interpolated ones at a silhouette do not."""
     c = dot(n, v)
     if c >= 0.01:
@@ -67,7 +67,7 @@ def _towards_eye(n, v):
 
 
 @leaf()
-def _frame(n, warp):
+def frame(n, warp):
     """Unit warp in the plane of ``n`` and the weft beside it."""
     t = along(warp, -dot(warp, n), n)
     if dot(t, t) < 1e-12:
@@ -110,7 +110,7 @@ def _detail(mesh, look, material, f, hit, n, v):
         if material.texture >= 0:
             gu, gv, roughness, share = grain(look.textures, material, roughness, u, w, width)
         if material.texture >= 0 or material.maps >= 0:
-            warp, weft = _frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
+            warp, weft = frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
             n = unit(along(along(n, -su - gu, warp), -sv - gv, weft))
         if material.perforation_diameter > 0.0:
             kept = 1.0 - holes(
@@ -157,15 +157,15 @@ def sample(mesh, look, lights, around, f, hit, q, visible, work):
     n = unit(blend(mesh.normals, mesh.faces, f, b1, b2))
     if dot(plane, v) < 0.0:
         n = (-n[0], -n[1], -n[2])
-    n = _towards_eye(n, v)
+    n = towards_eye(n, v)
     material = look.materials[mesh.panel[f]]
     n, colour, roughness, metal, kept = _detail(mesh, look, material, f, hit, n, v)
     if metal != material.metalness:
         look.changed[0] = material
         look.changed[0].metalness = metal
         material = look.changed[0]
-    n = _towards_eye(n, v)
-    warp, weft = _frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
+    n = towards_eye(n, v)
+    warp, weft = frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
     out, f_out = work[0], work[1]
     view = view_of(look.tables, material, roughness, colour, dot(warp, v), dot(weft, v), dot(n, v))
     _from_around(mesh, look, around, f, b1, b2, material, view, n, v, work)
@@ -194,20 +194,17 @@ def _from_around(mesh, look, around, f, b1, b2, material, view, n, v, work):
     """Light of the sky and of other faces that goes to the eye, into ``work[0]``."""
     out, specular, diffuse = work[0], work[1], work[2]
     coat = albedo_towards(look.tables, material, view, specular, diffuse)
-    sky = blend(around.sky, mesh.faces, f, b1, b2)
-    bounce = blend(around.bounce, mesh.faces, f, b1, b2)
-    if len(around.panorama) == 0:
-        for c in range(3):
-            out[c] = (specular[c] + coat + diffuse[c]) * (sky[c] + bounce[c])
-        return
-    mirror = along((-v[0], -v[1], -v[2]), 2.0 * dot(n, v), n)
+    everywhere = blend(around.diffuse, mesh.faces, f, b1, b2)
+    mirrored = blend(around.mirrored, mesh.faces, f, b1, b2)
     share = _blend_one(around.open, mesh.faces, f, b1, b2)
-    base = panorama_towards(around.panorama, view.table_roughness, mirror)
-    top = base
-    if coat > 0.0:
-        top = panorama_towards(around.panorama, material.coat_roughness, mirror)
+    base = top = row_of(around.even)
+    if len(around.panorama):
+        mirror = along((-v[0], -v[1], -v[2]), 2.0 * dot(n, v), n)
+        base = top = panorama_towards(around.panorama, view.table_roughness, mirror)
+        if coat > 0.0:
+            top = panorama_towards(around.panorama, material.coat_roughness, mirror)
     for c in range(3):
-        out[c] = (specular[c] + coat + diffuse[c]) * bounce[c] + diffuse[c] * sky[c]
+        out[c] = diffuse[c] * everywhere[c] + (specular[c] + coat) * mirrored[c]
         out[c] += share * (specular[c] * base[c] + coat * top[c])
 
 
