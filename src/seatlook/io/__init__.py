@@ -30,6 +30,7 @@ _PUBLIC: dict[str, str] = {
     "write_curves": "curves",
     "write_dxf": "dxf_write",
     "write_dynain": "dynain",
+    "write_numbers": "table",
     "write_obj": "surface",
     "write_result": "result",
     "write_seams": "seams",

@@ -8,13 +8,13 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model import Camera, Solution
-from seatlook.pbr.maps import FACTOR, sampled, shaded, titled
+from seatlook.pbr.maps import FACTOR, coloured, sampled, titled
 from seatlook.pbr.picture import Picture
 from seatlook.pbr.studio import studio
 
 Motif = Literal["checker", "stripe"]
-_DARK, _LIGHT = 0.05, 0.72
-_BARE = (0.6, 0.6, 0.6)
+_TONES = np.repeat([[0.72], [0.05]], 3, axis=1)
+_BARE = 0.6
 
 
 def render_checker(
@@ -48,9 +48,7 @@ def render_checker(
         sampled(stage, ids, camera, np.ascontiguousarray(corners[:, :, k])) for k in (0, 1)
     )
     cell = np.floor(v / size) + (np.floor(u / size) if motif == "checker" else 0.0)
-    tone = np.where(cell % 2 == 0, _LIGHT, _DARK)
-    colour = np.repeat(tone[..., None], 3, axis=2)
-    colour[np.isnan(cell)] = _BARE
     what = "squares" if motif == "checker" else "stripes along the warp"
-    picture = titled(shaded(colour, ids, cosine), f"{what} of {1e3 * size:g} mm on the pattern")
+    pixels = coloured(cell % 2, cosine, ids, _TONES, (0.0, 1.0), bare=_BARE)
+    picture = titled(pixels, f"{what} of {1e3 * size:g} mm on the pattern")
     return Picture(pixels=np.asarray(picture), value_range=(0.0, 1e3 * size))

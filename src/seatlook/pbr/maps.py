@@ -11,6 +11,7 @@ from PIL import ImageDraw, ImageFont
 from seatlook.errors import InputError, did_you_mean
 from seatlook.model import Camera, FloatArray, Solution
 from seatlook.model.colour import srgb_decode, srgb_encode
+from seatlook.pbr.kernels import colour
 from seatlook.pbr.kernels import surface as kernel
 from seatlook.pbr.picture import Picture
 from seatlook.pbr.studio import Studio, eye_of, studio
@@ -68,10 +69,7 @@ def render_map(
     corner = _corner_values(values, solution, smooth=smooth)
     value, cosine = sampled(stage, ids, camera, corner)
     table = colour_table(colormap)
-    position = np.clip((value - low) / (high - low), 0.0, 1.0) * (len(table) - 1)
-    flat = table[np.rint(np.nan_to_num(position)).astype(np.int64)]
-    flat[np.isnan(value)] = (_BARE / 255) ** 2.2
-    pixels = shaded(flat, ids, cosine)
+    pixels = coloured(value, cosine, ids, table, (low, high))
     return Picture(
         pixels=with_bar(pixels, table, (low, high), title, unit), value_range=(low, high)
     )
@@ -125,14 +123,27 @@ def sampled(
     return value, cosine
 
 
-def shaded(
-    colour: FloatArray, ids: npt.NDArray[np.int32], cosine: FloatArray
+def coloured(
+    value: FloatArray,
+    cosine: FloatArray,
+    ids: npt.NDArray[np.int32],
+    table: FloatArray,
+    value_range: tuple[float, float],
+    *,
+    bare: float = (_BARE / 255) ** 2.2,
 ) -> npt.NDArray[np.uint8]:
-    """Pixels (h, w, 3) of linear colours per sample, darker where the surface turns away."""
-    light = colour * (0.62 + 0.38 * cosine[..., None])
-    light[ids < 0] = (_PAPER / 255) ** 2.2
-    height, width = (size // FACTOR for size in ids.shape)
-    mean = light.reshape(height, FACTOR, width, FACTOR, 3).mean(axis=(1, 3))
+    """Pixels (h, w, 3) of values per sample, darker where the surface turns away.
+
+    Parameters
+    ----------
+    table : (k, 3) linear colours from one end of the range to the other
+    bare : linear grey of what has no value
+    """
+    mean = np.empty((ids.shape[0] // FACTOR, ids.shape[1] // FACTOR, 3))
+    paper = (_PAPER / 255) ** 2.2
+    colour.coloured(
+        value, cosine, ids, *value_range, table, np.full(3, bare), paper, FACTOR, mean
+    )  # fmt: skip
     return np.rint(255 * srgb_encode(np.clip(mean, 0, 1))).astype(np.uint8)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model import Camera, FloatArray, Solution
-from seatlook.pbr.maps import FACTOR, colour_table, sampled, shaded, with_bar
+from seatlook.pbr.maps import FACTOR, colour_table, coloured, sampled, with_bar
 from seatlook.pbr.picture import Picture
 from seatlook.pbr.studio import studio
 
@@ -49,10 +49,7 @@ def render_pixel_map(
     _, cosine = sampled(stage, ids, camera, nothing)
     table = colour_table("viridis")
     value = np.repeat(np.repeat(values, FACTOR, axis=0), FACTOR, axis=1)
-    position = np.clip((value - low) / (high - low), 0.0, 1.0) * (len(table) - 1)
-    flat = table[np.rint(np.nan_to_num(position)).astype(np.int64)]
-    flat[np.isnan(value)] = _BARE
-    pixels = shaded(flat, ids, cosine)
+    pixels = coloured(value, cosine, ids, table, value_range, bare=_BARE)
     return Picture(
         pixels=with_bar(pixels, table, value_range, title, unit), value_range=value_range
     )

@@ -61,8 +61,10 @@ def sewn_edges(cover: Cover, refined: Refined, uv: FloatArray) -> SewnEdges:
     key = np.array([n, 1])
     panel_of = np.zeros(len(cover.rest), dtype=np.int64)
     panel_of[cover.faces] = cover.panel[:, None]
-    edges = boundary_edges(np.array(cover.faces))
-    edges = edges[_is_sewn(cover, edges)]
+    edges = np.zeros((0, 2), dtype=np.int64)
+    if cover.stitchings:
+        edges = boundary_edges(np.array(cover.faces))
+        edges = edges[_is_sewn(cover, edges)]
     panel = panel_of[edges[:, 0]]
     first = len(cover.rest)
     for ends in refined.parents:

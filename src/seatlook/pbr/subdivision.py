@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
+from seatlook.mesh import boundary_sides
 from seatlook.model import FloatArray, IntArray
 
 _CORNER = np.radians(40.0)
@@ -88,10 +89,7 @@ def sharp_corners(rest: FloatArray, faces: IntArray) -> IntArray:
 
 def boundary_edges(faces: IntArray) -> IntArray:
     """Directed edges (b, 2) that belong to one face only."""
-    half = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    key = half.min(axis=1) * (faces.max() + 1) + half.max(axis=1)
-    _, inverse, count = np.unique(key, return_inverse=True, return_counts=True)
-    return np.asarray(half[count[inverse] == 1])
+    return np.asarray(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)[boundary_sides(faces)])
 
 
 def _step(

@@ -66,7 +66,7 @@ def drawn_surface(solution: Solution) -> Surface:
         np.hstack([solution.positions, cover.rest]),
         cover.faces,
         levels=levels,
-        corners=sharp_corners(cover.rest, cover.faces),
+        corners=sharp_corners(cover.rest, cover.faces) if levels else np.zeros(0, dtype=np.int64),
     )
     uv = np.ascontiguousarray(refined.points[:, 3:])
     edges = seam.sewn_edges(cover, refined, uv)

@@ -78,6 +78,7 @@ def write_shell_page(
                 "curvature from": figures["source"],
                 "shells turned over": str(figures["shells_turned"]),
                 "shells deleted": str(figures["shells_deleted"]),
+                "tier of the picture": drawn.quality,
             }
         ),
         status="the shape is that of another calculation",

@@ -14,11 +14,13 @@ from seatlook import io, pbr
 from seatlook.evaluation import Progress
 from seatlook.model import Camera, FloatArray, Solution, WrinkleMap
 from seatlook.wrinkle import (
+    DESIGN_WAVELENGTH,
     DISTORTIONS,
     Distortion,
     DistortionRow,
     Section,
     Wrinkle,
+    beside_sections,
     distortion,
     distortion_table,
     low_passed,
@@ -65,8 +67,9 @@ class Findings:
 def find(solution: Solution, indices: WrinkleMap, *, count: int = 5) -> Findings:
     """Rank the worst wrinkles, cut across them, and measure the distortion of the texture."""
     worst = worst_wrinkles(solution, indices, count=count)
-    # The low pass is the dearest step, and without a section nobody looks at its shape.
-    design = low_passed(solution.cover, solution.positions) if worst else None
+    # The low pass is the dearest step, and nobody looks at its shape but beside a section.
+    beside = beside_sections(solution.cover, worst, 1.5 * DESIGN_WAVELENGTH)
+    design = low_passed(solution.cover, solution.positions, within=beside)
     found = distortion(solution)
     return Findings(
         worst=worst,

@@ -17,7 +17,9 @@ _SKY = 4_000.0  # [cd/m2]
 def fitted_view(solution: Solution, *, size: tuple[int, int] = (1280, 720)) -> Camera:
     """Return a camera that sees all of the cover from its visible side, a little from aside."""
     normal, aside, up = _axes(solution)
-    x = solution.positions[np.unique(solution.cover.faces)]
+    used = np.zeros(len(solution.positions), dtype=bool)
+    used[solution.cover.faces] = True
+    x = solution.positions[used]
     middle = 0.5 * (x.min(axis=0) + x.max(axis=0))
     radius = float(np.linalg.norm(x - middle, axis=1).max())
     narrow = min(1.0, size[0] / size[1])

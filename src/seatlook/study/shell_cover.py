@@ -245,9 +245,16 @@ def _strains(
     c, s = first / size, second / size
     # Seen from the visible side, weft is to the left of warp, also where the shell was turned over.
     left = wrinkles.sign[element]
-    turn = np.stack([np.stack([c, s], axis=1), np.stack([-left * s, left * c], axis=1)], axis=1)
-    mid, half = (
-        turn @ strain[element] @ np.swapaxes(turn, 1, 2)
-        for strain in (wrinkles.strain_mid, wrinkles.strain_half)
-    )
+    mid = _turned(wrinkles.strain_mid[element], c, s, left)
+    half = _turned(wrinkles.strain_half[element], c, s, left)
     return mid + half, mid, mid - half
+
+
+def _turned(e: FloatArray, c: FloatArray, s: FloatArray, left: FloatArray) -> FloatArray:
+    """Symmetric tensors (m, 2, 2) in axes (c, s) and ``left`` times (-s, c)."""
+    xx, yy, xy = e[:, 0, 0], e[:, 1, 1], e[:, 0, 1]
+    out = np.empty_like(e)
+    out[:, 0, 0] = c * c * xx + s * s * yy + 2 * c * s * xy
+    out[:, 1, 1] = s * s * xx + c * c * yy - 2 * c * s * xy
+    out[:, 0, 1] = out[:, 1, 0] = left * (c * s * (yy - xx) + (c * c - s * s) * xy)
+    return out

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from seatlook.pbr import Picture
 
 PICTURE = "picture.png"
+# From this many triangles the sky and the light between shells are left out of the picture: they
+# are gathered at every vertex, and would take longer than all the rest.
+_MANY = 200_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +32,7 @@ class DrawnState:
     ----------
     maps, distortion : name -> path and picture; no distortion without a flat undeformed state
     files : tables
+    quality : tier of the picture
     """
 
     folder: Path
@@ -41,6 +45,7 @@ class DrawnState:
         default_factory=lambda: MappingProxyType({})
     )
     files: tuple[str, ...]
+    quality: str
 
 
 def draw_state(
@@ -71,8 +76,8 @@ def draw_state(
     solution = cover.solution
     indices = on_faces(wrinkles.indices, cover)
     camera = fitted_view(solution, size=size)
-    write_elements(shells, wrinkles, out / "elements.csv")
     maps = draw_maps(solution, indices, camera, out, say, top=top)
+    write_elements(shells, wrinkles, out / "elements.csv")
     found = find(solution, indices)
     files = write_findings(found, out, distortion=not cover.projected)
     shown: MappingProxyType[str, tuple[str, Picture]] = MappingProxyType({})
@@ -80,10 +85,11 @@ def draw_state(
         shown = draw_findings(found, solution, camera, out, say)
     say("render")
     rig = side_light(solution)
-    pbr.render(solution, None, rig=rig, camera=camera).save(out / PICTURE)
+    quality = "T3" if len(solution.cover.faces) < _MANY else "T2"
+    pbr.render(solution, None, rig=rig, camera=camera, quality=quality).save(out / PICTURE)
     return DrawnState(
         folder=out, cover=cover, findings=found, camera=camera, rig=rig, maps=maps,
-        distortion=shown, files=("elements.csv", *files),
+        distortion=shown, files=("elements.csv", *files), quality=quality,
     )  # fmt: skip
 
 
@@ -103,4 +109,4 @@ def write_elements(shells: Shells, wrinkles: ShellWrinkles, path: Path) -> None:
         "shell", "part", "area_mm2", "c_per_mm", "w1", "w2", "r_stretch", "w_stretch",
         "w_compression",
     )  # fmt: skip
-    io.write_table(path, heads, zip(*(column.tolist() for column in columns), strict=True))
+    io.write_numbers(path, heads, columns)

@@ -27,7 +27,13 @@ from seatlook.wrinkle.measures import (
     w2_net,
     wrinkle_strain,
 )
-from seatlook.wrinkle.recovery import low_passed, recover, recovery_error, shape_curvature
+from seatlook.wrinkle.recovery import (
+    DESIGN_WAVELENGTH,
+    low_passed,
+    recover,
+    recovery_error,
+    shape_curvature,
+)
 from seatlook.wrinkle.section import Section, section
 from seatlook.wrinkle.shells import ShellWrinkles, shell_indices
 from seatlook.wrinkle.texture import (
@@ -37,12 +43,13 @@ from seatlook.wrinkle.texture import (
     distortion,
     distortion_table,
 )
-from seatlook.wrinkle.worst import Wrinkle, section_across, worst_wrinkles
+from seatlook.wrinkle.worst import Wrinkle, beside_sections, section_across, worst_wrinkles
 from seatlook.wrinkle.zone import ZoneRow, map_top, zone_table
 from seatlook.zones import quantile
 
 __all__ = [
     "DEAD_BAND",
+    "DESIGN_WAVELENGTH",
     "DISTORTIONS",
     "INDICES",
     "MEASURES",
@@ -55,6 +62,7 @@ __all__ = [
     "Surface",
     "Wrinkle",
     "ZoneRow",
+    "beside_sections",
     "compression_wrinkle",
     "curvature_index",
     "curvature_tensor",

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy.sparse import coo_array, csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from seatlook.errors import InputError
 from seatlook.kinematics import deformation_gradient
-from seatlook.mesh import angles, face_areas
+from seatlook.mesh import angles, boundary_sides, face_areas
 from seatlook.model import Cover, FloatArray, IntArray
 from seatlook.wrinkle.jet import vertex_curvature
 
@@ -112,13 +113,22 @@ def _fit_weights(
 
 
 def low_passed(
-    cover: Cover, positions: FloatArray, *, wavelength: float = DESIGN_WAVELENGTH
+    cover: Cover,
+    positions: FloatArray,
+    *,
+    wavelength: float = DESIGN_WAVELENGTH,
+    within: npt.NDArray[np.bool_] | None = None,
 ) -> FloatArray:
     """Smooth shape (n, 3) [m]: waves shorter than ``wavelength`` removed, sewn lines held.
 
     Outlines of panels and all hooked or framed points keep their place, so an intended trench or
     bolster root stays. Half of a wave of the cut-off length passes; of a third of it, one part in
     eighty.
+
+    Parameters
+    ----------
+    within : (n,) bool    vertices to be moved, to save time on large covers; at one and a half
+        wavelengths from those that are not, the shape is that of the whole to one part in 700
 
     Raises
     ------
@@ -127,21 +137,36 @@ def low_passed(
     """
     if not wavelength > 0:
         raise InputError.single("wavelength", got=wavelength, expected="above 0")
-    n = len(cover.rest)
-    stiffness, mass = _laplacian(cover.rest, cover.faces, n)
+    smooth, moved = np.array(positions), ~_held(cover)
+    if within is not None:
+        moved &= within
+    if not moved.any():
+        return smooth
+    node, faces = _two_rings(moved, cover.faces)
+    stiffness, mass = _laplacian(cover.rest[node], faces, len(node))
     length4 = (wavelength / (2 * np.pi)) ** 4
     matrix = diags_array(mass) + length4 * stiffness @ diags_array(1.0 / mass) @ stiffness
-    free = np.flatnonzero(~_held(cover))
-    smooth = np.array(positions)
-    if not len(free):
-        return smooth
+    free = np.flatnonzero(moved[node])
     # Smoothing what lies beside a held point: its known part goes to the right-hand side.
     rows = csc_array(matrix)[free]
-    right = (mass[:, None] * positions)[free]
-    known = np.array(positions)
+    known = smooth[node]
+    right = (mass[:, None] * known)[free]
     known[free] = 0.0
-    smooth[free] = splu(csc_array(rows[:, free])).solve(right - rows @ known)
+    smooth[node[free]] = splu(csc_array(rows[:, free])).solve(right - rows @ known)
     return smooth
+
+
+def _two_rings(moved: npt.NDArray[np.bool_], faces: IntArray) -> tuple[IntArray, IntArray]:
+    """Vertices (k,) up to two rings around those moved, and their faces, numbered among them.
+
+    As far as the fourth-order operator looks.
+    """
+    near = np.array(moved)
+    for _ in range(2):
+        touched = near[faces].any(axis=1)
+        near[faces[touched]] = True
+    number = np.cumsum(near) - 1
+    return np.flatnonzero(near), number[faces[touched]]
 
 
 def shape_curvature(cover: Cover, positions: FloatArray) -> FloatArray:
@@ -154,11 +179,8 @@ def shape_curvature(cover: Cover, positions: FloatArray) -> FloatArray:
 
 def _held(cover: Cover) -> np.ndarray:
     """Vertices on outlines, hooks and frames."""
-    half = cover.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    key = np.sort(half, axis=1) @ [len(cover.rest), 1]
-    _, inverse, count = np.unique(key, return_inverse=True, return_counts=True)
     held = np.zeros(len(cover.rest), dtype=bool)
-    held[half[count[inverse] == 1]] = True
+    held[cover.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)[boundary_sides(cover.faces)]] = True
     for anchor in cover.anchors:
         held[anchor.points.vertices[anchor.points.weights > 0]] = True
     return held

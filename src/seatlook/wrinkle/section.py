@@ -94,10 +94,12 @@ def section(
 
 def _located(cover: Cover, panel: int, line: FloatArray) -> tuple[IntArray, FloatArray]:
     """Return the face (k,) of each point, -1 outside, and barycentric weights (k, 3)."""
-    mine = np.flatnonzero(cover.panel == panel)
+    low, high = line.min(axis=0), line.max(axis=0)
+    # One bit per side of the line's box: a face whose corners share one lies beyond that side.
+    beyond = np.concatenate([cover.rest < low, cover.rest > high], axis=1)
+    side = np.packbits(beyond, axis=1)[:, 0][cover.faces]
+    mine = np.flatnonzero((side[:, 0] & side[:, 1] & side[:, 2] == 0) & (cover.panel == panel))
     p = cover.rest[cover.faces[mine]]
-    near = ((p.max(axis=1) >= line.min(axis=0)) & (p.min(axis=1) <= line.max(axis=0))).all(axis=1)
-    mine, p = mine[near], p[near]
     if not len(mine):
         return np.full(len(line), -1), np.zeros((len(line), 3))
     inverse = np.linalg.inv(np.stack([p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]], axis=2))

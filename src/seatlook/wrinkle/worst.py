@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
@@ -78,33 +80,53 @@ def section_across(
     solution: Solution, wrinkle: Wrinkle, *, design: FloatArray | None = None
 ) -> Section:
     """Cut the cover across a wrinkle at its deepest place; ``design`` as for ``section``."""
-    across = np.array([-wrinkle.along[1], wrinkle.along[0]])
     cover = solution.cover
-    half = min(2.0 * wrinkle.width + 2.0 * cover.element_size, _LONGEST_SECTION)
     return section(
         cover,
         solution.positions,
         panel=cover.panel_names.index(wrinkle.panel),
         middle=wrinkle.rest,
-        direction=across,
-        half_length=half,
+        direction=_across(wrinkle),
+        half_length=_half_section(cover, wrinkle),
         design=design,
     )
 
 
+def beside_sections(
+    cover: Cover, wrinkles: Iterable[Wrinkle], reach: float
+) -> npt.NDArray[np.bool_]:
+    """Vertices (n,) within ``reach`` [m] of the sections across some wrinkles."""
+    panel = np.full(len(cover.rest), -1)
+    panel[cover.faces] = cover.panel[:, None]
+    near = np.zeros(len(cover.rest), dtype=bool)
+    for wrinkle in wrinkles:
+        mine = np.flatnonzero(panel == cover.panel_names.index(wrinkle.panel))
+        off = cover.rest[mine] - wrinkle.rest
+        half = _half_section(cover, wrinkle)
+        along = np.maximum(np.abs(off @ _across(wrinkle)) - half, 0.0)
+        near[mine[np.hypot(along, off @ wrinkle.along) < reach]] = True
+    return near
+
+
+def _across(wrinkle: Wrinkle) -> FloatArray:
+    return np.array([-wrinkle.along[1], wrinkle.along[0]])
+
+
+def _half_section(cover: Cover, wrinkle: Wrinkle) -> float:
+    return min(2.0 * wrinkle.width + 2.0 * cover.element_size, _LONGEST_SECTION)
+
+
 def _regions(faces: IntArray, marked: np.ndarray) -> IntArray:
     """Number (m,) of the region of each marked face, joined over edges; -1 elsewhere."""
-    half = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    mine = faces[marked]
+    half = np.sort(mine[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     key = half @ np.array([int(faces.max()) + 1, 1])
     order = np.argsort(key, kind="stable")
     same = np.flatnonzero(key[order][1:] == key[order][:-1])
     a, b = order[same] // 3, order[same + 1] // 3
-    both = marked[a] & marked[b]
-    a, b = a[both], b[both]
-    graph = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(len(faces), len(faces)))
-    label = connected_components(graph, directed=False)[1]
+    graph = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(len(mine), len(mine)))
     region = np.full(len(faces), -1, dtype=np.int64)
-    region[marked] = np.unique(label[marked], return_inverse=True)[1]
+    region[marked] = connected_components(graph, directed=False)[1]
     return region
 
 
