@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import json
 import os
 import signal
@@ -54,6 +55,13 @@ def test_every_command_explains_itself_with_an_example(command, capsys):
         (["demo", "--ease", "2%"], "--ease: got '2%', expected NAME=2%"),
         (["demo", "--starve", "INSERT=much"], "--starve: got 'INSERT=much', expected NAME=2%"),
         (["demo", "--material", "sued"], "did you mean 'suede'?"),
+        (["init", "a.dxf", "a.obj"], "see: seatlook init --help"),
+        (["materials", "sow"], "see: seatlook materials --help"),
+        (
+            ["evaluate", "a.dxf", "--out", "o"],
+            "make one of a pattern and a foam with: seatlook init",
+        ),
+        (["init", "a.obj", "a.dxf", "--out", "o"], "expected first the pattern, then the foam"),
     ],
 )
 def test_wrong_words_end_with_2_and_one_message(words, message, capsys, tmp_path, monkeypatch):
@@ -312,7 +320,8 @@ def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
     assert any(row.startswith("INSERT interior") for row in rows)
     assert len(list(evaluated.glob("images/*/*.png"))) == 6
     maps = {path.stem for path in evaluated.glob("maps/*.png")}
-    assert {"w1", "w2", "w2_net", "w_stretch", "w_compression", "standoff", "checker"} <= maps
+    assert {"w1", "w2", "w2_net", "w_stretch", "w_compression", "standoff", "deviation"} <= maps
+    assert "checker" in maps
     page = (evaluated / "index.html").read_text()
     for part in (
         "suede under bulb left",
@@ -321,6 +330,8 @@ def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
         "texture pvc",
         "Standoff",
         "Shape against the foam",
+        "Shape against the design",
+        "Seam lines",
         "ease [mm]",
     ):
         assert part in page
@@ -348,6 +359,32 @@ def test_a_result_is_judged_and_drawn_again_without_solving(evaluated, tmp_path)
     assert done.returncode == 0, done.stderr
     (again,) = tmp_path.rglob("*.png")
     assert again.read_bytes() == (evaluated / "images/sun/suede.png").read_bytes()
+
+
+@pytest.mark.render
+def test_shape_and_seam_lines_are_compared_with_the_design(evaluated, tmp_path):
+    with (evaluated / "seam-lines.csv").open() as file:
+        kept = {row["seam"]: row for row in csv.DictReader(file)}
+    assert len(kept) == 14
+    words = ["shape", "scene.toml", "result.npz", "--json"]
+    zones = seatlook(*words, "--out", str(tmp_path), cwd=evaluated)
+    assert zones.returncode == 0, zones.stderr
+    rows = {row["zone"]: row for row in json.loads(zones.stdout)}
+    assert rows["INSERT interior"]["measured_percent"] == pytest.approx(100)
+    for row in rows.values():
+        assert row["lowest_mm"] <= row["mean_mm"] <= row["highest_mm"]
+        assert row["p95_mm"] <= max(-row["lowest_mm"], row["highest_mm"]) + 1e-9
+    for name in ("shape.csv", "seam-lines.csv", "maps/deviation.png"):
+        assert (tmp_path / name).read_bytes() == (evaluated / name).read_bytes()
+    seams = json.loads(seatlook(*words, "--seams", cwd=evaluated).stdout)
+    for row in seams:
+        assert 0 < row["mean_mm"] < row["largest_mm"]
+        assert row["mean_mm"] == pytest.approx(float(kept[row["seam"]]["mean_mm"]))
+    text = (evaluated / "scene.toml").read_text()
+    (evaluated / "bare.toml").write_text(text.replace('[design]\nfile = "design.obj"', "[design]"))
+    bare = seatlook("shape", "bare.toml", "result.npz", cwd=evaluated)
+    assert bare.returncode == 2
+    assert "bare.toml: design: got nothing, expected a table [design] with a file" in bare.stderr
 
 
 @pytest.mark.render

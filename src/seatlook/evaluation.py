@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Protocol
 from seatlook import io, pbr
 from seatlook.assembly import assemble
 from seatlook.errors import InputError
-from seatlook.model import Camera, FloatArray, Limit, Scene, Solution, WrinkleMap
+from seatlook.model import Camera, Design, FloatArray, Limit, Scene, Solution, WrinkleMap
 from seatlook.model.scene import SCORE_MEASURES
 from seatlook.solver import solve
-from seatlook.solver.standoff import standoff
+from seatlook.solver.deviation import SeamLine, deviation, seam_lines
+from seatlook.solver.standoff import ZoneStandoff, standoff, zone_standoff
 from seatlook.wrinkle import (
     Surface,
     ZoneRow,
@@ -39,8 +40,14 @@ MAPS: Mapping[str, str] = MappingProxyType(
         "w_compression": "the part of W2 where there is too much fabric",
     }
 )
-STANDOFF = "distance from the foam as drawn: above 0 it stands off, below 0 it presses in"
-_STANDOFF_RANGE_MM = 5.0  # the same on every page, so that pages compare
+# Maps in mm, about 0.
+DISTANCES: Mapping[str, str] = MappingProxyType(
+    {
+        "standoff": "distance from the foam as drawn: above 0 it stands off, below 0 it presses in",
+        "deviation": "distance from the design surface: above 0 outside, below 0 inside",
+    }
+)
+_DISTANCE_RANGE_MM = 5.0  # the same on every page, so that pages compare
 
 
 class Progress(Protocol):
@@ -74,6 +81,7 @@ class Evaluation:
     indices: WrinkleMap
     zones: tuple[ZoneRow, ...]
     standoff: FloatArray
+    deviation: FloatArray | None
     camera: Camera
     pictures: MappingProxyType[tuple[str, str], str]
     maps: MappingProxyType[str, tuple[str, Picture]]
@@ -113,7 +121,10 @@ def evaluate(
     indices = wrinkle_map(scene, solution)
     zones = zone_table(solution, indices, w2_net(surface(scene, solution, indices)))
     write_zones(zones, out / "zones.csv")
-    off = standoff(solution)
+    off = {"standoff": standoff(solution)}
+    if scene.design is not None:
+        off["deviation"] = deviation(solution, scene.design)
+        write_shape(solution, scene.design, off["deviation"], out)
     camera = scene.cameras[0]
     return Evaluation(
         scene=scene,
@@ -121,13 +132,14 @@ def evaluate(
         solution=solution,
         indices=indices,
         zones=zones,
-        standoff=off,
+        standoff=off["standoff"],
+        deviation=off.get("deviation"),
         camera=camera,
         pictures=draw_pictures(scene, solution, camera, out, say),
         maps=MappingProxyType(
             {
                 **draw_maps(solution, indices, camera, out, say),
-                "standoff": draw_standoff(solution, off, camera, out),
+                **{n: draw_distance(n, solution, d, camera, out) for n, d in off.items()},
             }
         ),
         verdicts=tuple(
@@ -226,21 +238,57 @@ def draw_maps(
     return MappingProxyType(maps)
 
 
-def draw_standoff(
-    solution: Solution, off: FloatArray, camera: Camera, out: Path
+def draw_distance(
+    name: str, solution: Solution, off: FloatArray, camera: Camera, out: Path
 ) -> tuple[str, Picture]:
-    """Draw the standoff (m,) [m]; faces away from the foam stay grey."""
-    path = "maps/standoff.png"
+    """Draw one of ``DISTANCES`` (m,) [m]; faces where it is not known stay grey."""
+    path = f"maps/{name}.png"
     picture = pbr.render_map(
         solution,
         1e3 * off,
         camera=camera,
-        title=f"Standoff: {STANDOFF}",
+        title=f"{label(name)}: {DISTANCES[name]}",
         unit="mm",
-        value_range=(-_STANDOFF_RANGE_MM, _STANDOFF_RANGE_MM),
+        value_range=(-_DISTANCE_RANGE_MM, _DISTANCE_RANGE_MM),
     )
     picture.save(out / path)
     return path, picture
+
+
+def write_shape(solution: Solution, design: Design, off: FloatArray, out: Path) -> None:
+    """Write ``shape.csv``, the deviation (m,) [m] by zone, and ``seam-lines.csv``, both in mm."""
+    for name, rows in (
+        ("shape.csv", shape_rows(zone_standoff(solution, off))),
+        ("seam-lines.csv", seam_line_rows(seam_lines(solution, design))),
+    ):
+        if rows:
+            io.write_table(out / name, list(rows[0]), [tuple(row.values()) for row in rows])
+
+
+def shape_rows(zones: tuple[ZoneStandoff, ...]) -> list[dict[str, object]]:
+    """Zones and their distances, in mm and cm2."""
+    return [
+        {
+            "zone": z.zone,
+            "area_cm2": 1e4 * z.area,
+            "measured_percent": 100 * z.measured,
+            **{f"{n}_mm": 1e3 * getattr(z, n) for n in ("mean", "rms", "p95", "lowest", "highest")},
+        }
+        for z in zones
+    ]
+
+
+def seam_line_rows(seams: tuple[SeamLine, ...]) -> list[dict[str, object]]:
+    """Seams and how far they lie from the design's, in mm."""
+    return [
+        {
+            "seam": s.seam,
+            "length_mm": 1e3 * s.length,
+            "mean_mm": None if s.mean is None else 1e3 * s.mean,
+            "largest_mm": None if s.largest is None else 1e3 * s.largest,
+        }
+        for s in seams
+    ]
 
 
 def label(index: str) -> str:

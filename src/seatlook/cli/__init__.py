@@ -10,6 +10,7 @@ from seatlook.cli import (
     _precision,
     _run,
     _score,
+    _shape,
     _solve,
     _sweep,
     _wrinkle,
@@ -26,6 +27,7 @@ app.command(_run.evaluate)
 app.command(_solve.solve)
 app.command(_making.timeline)
 app.command(_making.hooks)
+app.command(_shape.shape)
 app.command(_precision.precision)
 app.command(_wrinkle.wrinkle)
 app.command(_compare.compare)

@@ -13,6 +13,7 @@ from seatlook.errors import InputError
 from seatlook.report.chart import number
 
 if TYPE_CHECKING:
+    from seatlook.report.design import DesignSection
     from seatlook.report.making import MakingSection
     from seatlook.report.wrinkles import WrinkleSection
 
@@ -178,6 +179,7 @@ class PageData:
     shape : one row per zone: how far it stands off the foam
     wrinkles : the worst wrinkles and the distortion of the texture
     making : energy balance, hooks, and pictures of the stages
+    design : the shape against its design surface; None where there is none
     spots : places of the worst wrinkles in the pictures
     toml : what parameters belong to -> the same as TOML, every digit kept
     score : how visible wrinkles are; None where nothing was scored
@@ -207,6 +209,7 @@ class PageData:
     shape: Table | None = None
     wrinkles: WrinkleSection | None = None
     making: MakingSection | None = None
+    design: DesignSection | None = None
     score: ScoreSection | None = None
     spots: tuple[Spot, ...] = ()
     toml: MappingProxyType[str, str] = field(default_factory=lambda: MappingProxyType({}))

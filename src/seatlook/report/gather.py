@@ -13,11 +13,13 @@ import numpy as np
 
 from seatlook import __version__
 from seatlook.assembly.ease import SeamEase, seam_ease
-from seatlook.evaluation import MAPS, RESULT, STANDOFF, Evaluation, label
+from seatlook.evaluation import DISTANCES, MAPS, RESULT, Evaluation, label
 from seatlook.model import Light, Rig, Scene, Solution
 from seatlook.pbr import ev100, lux_at_seat, offscreen_backend, render_map
 from seatlook.report.chart import number
 from seatlook.report.data import Check, MapView, PageData, RigHead, ScoreSection, Table
+from seatlook.report.design import FILES, design_section, distance_table
+from seatlook.report.in_short import missed, seen, wrinkled
 from seatlook.report.making import making_section
 from seatlook.report.page import write_page
 from seatlook.report.parameters import parameter_tables, parameter_toml
@@ -95,6 +97,7 @@ def page_data(evaluation: Evaluation) -> PageData:
         shape=_shape(evaluation),
         wrinkles=wrinkles,
         making=making_section(solution, evaluation.folder),
+        design=design_section(evaluation),
         checks=(*_conditions(solution), *_limits(evaluation)),
         warnings=tuple(_warnings(evaluation, waves)),
         history=MappingProxyType(
@@ -103,7 +106,7 @@ def page_data(evaluation: Evaluation) -> PageData:
                 for column, (name, factor) in _CHARTED.items()
             }
         ),
-        files=(RESULT, "zones.csv", *wrinkles.files),
+        files=(RESULT, "zones.csv", *(FILES if scene.design else ()), *wrinkles.files),
     )
 
 
@@ -137,7 +140,7 @@ def _described(light: Light) -> str:
 def _maps(evaluation: Evaluation) -> Iterator[MapView]:
     for name, (path, picture) in evaluation.maps.items():
         low, high = picture.value_range
-        picture_unit, meaning = ("mm", STANDOFF) if name == "standoff" else ("1", MAPS[name])
+        picture_unit, meaning = ("mm", DISTANCES[name]) if name in DISTANCES else ("1", MAPS[name])
         alone, top = _own_range(evaluation, name) if name in _CAUSES else (None, 1.0)
         yield MapView(
             name=label(name),
@@ -206,32 +209,14 @@ def _zones(evaluation: Evaluation) -> Table:
 
 
 def _shape(evaluation: Evaluation) -> Table:
-    """Standoff of the zones, the farthest from the foam first, without the free edges."""
-    rows = zone_standoff(evaluation.solution, evaluation.standoff)
+    """Standoff of the zones, the farthest from the foam first, and faces through each other."""
+    found = distance_table(zone_standoff(evaluation.solution, evaluation.standoff))
     figures = evaluation.solution.figures
     none = 0.0 if "intersecting_pairs" in figures else None
     return Table(
-        heads=(
-            "zone",
-            "mean [mm]",
-            "rms [mm]",
-            "lowest [mm]",
-            "highest [mm]",
-            "measured [%]",
-            "intersecting pairs",
-        ),
+        heads=(*found.heads, "intersecting pairs"),
         rows=tuple(
-            (
-                row.zone,
-                1e3 * row.mean,
-                1e3 * row.rms,
-                1e3 * row.lowest,
-                1e3 * row.highest,
-                100 * row.measured,
-                figures.get(f"zone/{row.zone}/intersecting_pairs", none),
-            )
-            for row in sorted(rows, key=lambda row: -row.rms)
-            if row.zone != "free edge"
+            (*row, figures.get(f"zone/{row[0]}/intersecting_pairs", none)) for row in found.rows
         ),
     )
 
