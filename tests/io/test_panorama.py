@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from seatlook.errors import InputError
+from seatlook.errors import InputError, InputWarning
 from seatlook.exr import write_exr
 from seatlook.io.panorama import read_panorama
 
@@ -77,6 +77,14 @@ def test_openexr_is_the_same_sky(tmp_path):
     sky = np.random.default_rng(0).random((8, 16, 3)).astype(np.float32) * 1e4
     write_exr(sky, tmp_path / "sky.exr")
     assert (read_panorama(tmp_path / "sky.exr") == sky).all()
+
+
+def test_openexr_with_values_below_zero_warns(tmp_path):
+    sky = np.ones((8, 16, 3), dtype=np.float32)
+    sky[2, 3] = -100.0
+    write_exr(sky, tmp_path / "sky.exr")
+    with pytest.warns(InputWarning, match="3 of 384 values below 0 are taken for 0"):
+        assert read_panorama(tmp_path / "sky.exr").min() == 0.0
 
 
 def test_openexr_of_another_shape(tmp_path, problems):

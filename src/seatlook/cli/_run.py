@@ -217,7 +217,7 @@ def render(
     view
         Camera of the scene. The first if not given.
     quality
-        draft, standard or high, or a tier from T0 to T5.
+        draft, standard or high, or a tier from T0 to T4.
     tone
         How light above white is shown: cut off, or rolled off (Khronos neutral).
     radiance

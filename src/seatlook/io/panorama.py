@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.errors import InputError
+from seatlook.errors import InputError, InputWarning
 from seatlook.exr import read_exr
 from seatlook.model import FloatArray
 
@@ -24,10 +25,23 @@ def read_panorama(path: Path) -> FloatArray:
     InputError
         Not a Radiance or OpenEXR picture, another orientation than ``-Y h +X w``, not twice as
         wide as high, or cut short; no extra.
+
+    Warns
+    -----
+    InputWarning
+        Values below 0, which filters leave around a sun in OpenEXR pictures, are taken for 0.
     """
     if path.suffix.lower() == ".exr":
         pixels = read_exr(path).astype(np.float64)
         _check_size(path, *pixels.shape[:2])
+        below = int((pixels < 0).sum())
+        if below:
+            warnings.warn(
+                f"{path}: panorama: {below} of {pixels.size} values below 0 are taken for 0",
+                InputWarning,
+                stacklevel=2,
+            )
+        pixels = np.maximum(pixels, 0.0)
         return pixels if pixels.ndim == 3 else np.repeat(pixels[..., None], 3, axis=2)
     content = path.read_bytes()
     head = re.match(rb"#\?(?:RADIANCE|RGBE)\n(.*?)\n\n-Y (\d+) \+X (\d+)\n", content, re.DOTALL)
