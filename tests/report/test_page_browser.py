@@ -15,6 +15,7 @@ import pytest
 
 from report.pages import RIGS, page_data, write_png
 from seatlook.report import write_page
+from seatlook.report.data import Spot
 
 pytestmark = pytest.mark.browser
 
@@ -72,7 +73,7 @@ def pictures(page: Any) -> tuple[str, str]:
 
 def test_all_images_decode(page):
     assert all_images_decode(page)
-    assert page.locator("img").count() == 13
+    assert page.locator("img").count() == 15
 
 
 def test_the_slider_wipes_by_keyboard_and_by_mouse(page):
@@ -83,8 +84,8 @@ def test_the_slider_wipes_by_keyboard_and_by_mouse(page):
         "inset(0px 0px 0px 55%)"
     )
     page.locator("#stage").scroll_into_view_if_needed()
-    box = page.locator(".sheet").bounding_box()
-    page.mouse.move(box["x"] + box["width"] / 4, box["y"] + 20)
+    box = page.locator("#sheet").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 4, box["y"] + box["height"] / 2)
     page.mouse.down()
     page.mouse.up()
     assert page.locator("#cut").input_value() == "25"
@@ -135,7 +136,7 @@ def test_holding_shows_b_only_as_long_as_it_is_held(page):
 
 
 def test_an_overlay_lies_over_both_with_its_opacity(page):
-    over = page.locator("#picture-o")
+    over = page.locator("#sheet .over")
     assert not over.is_visible()
     assert page.locator("#opacity").is_disabled()
     page.get_by_label("Overlay").select_option(label="W2")
@@ -196,11 +197,55 @@ def test_maps_take_a_range_of_their_own(page):
 def test_a_wrinkle_is_jumped_to(page):
     page.get_by_role("button", name="wrinkle 1").click()
     assert page.locator("#zoom").input_value() == "2"
-    assert page.locator("#spot").is_visible()
-    assert page.locator("#spot").evaluate("spot => [spot.style.left, spot.style.top]") == [
-        "100px",
-        "40px",
-    ]
+    spot = page.locator("#sheet .spot")
+    assert spot.is_visible()
+    assert spot.evaluate("spot => [spot.style.left, spot.style.top]") == ["100px", "40px"]
+
+
+def test_wrinkles_are_gone_through_by_key(browser, tmp_path):
+    spots = (Spot(label="wrinkle 1", x=50.0, y=20.0), Spot(label="wrinkle 2", x=10.0, y=10.0))
+    path = write_page(page_data(tmp_path, spots=spots), tmp_path)
+    context = browser.new_context(offline=True)
+    page = context.new_page()
+    page.goto(path.as_uri())
+    page.locator("#stage").focus()
+    left = "document.querySelector('#sheet .spot').style.left"
+    for expected in ("100px", "20px", "100px"):
+        page.keyboard.press("n")
+        assert page.evaluate(left) == expected
+    context.close()
+
+
+def test_side_by_side_both_pictures_scroll_and_enlarge_together(page):
+    beside = page.locator("#beside")
+    assert not beside.is_visible()
+    page.locator("#stage").focus()
+    for _ in range(3):
+        page.keyboard.press("m")
+    assert page.locator("#mode").input_value() == "side"
+    assert beside.is_visible()
+    assert page.locator("#cut").is_disabled()
+    assert page.locator("#picture-beside").get_attribute("alt") == "B: black leather, bulb_left"
+    assert not page.locator("#picture-b").is_visible()
+    page.get_by_label("Overlay").select_option(label="W2")
+    assert page.locator("#beside .over").is_visible()
+    page.evaluate("for (const p of document.querySelectorAll('.stage')) p.style.width = '100px'")
+    page.get_by_label("Size").select_option("4")
+    widths = "[...document.querySelectorAll('.sheet')].map(s => s.clientWidth)"
+    assert page.evaluate(widths) == [256, 256]
+    left = "[...document.querySelectorAll('.stage')].map(p => p.scrollLeft)"
+    page.evaluate("document.querySelector('#stage').scrollLeft = 30")
+    page.wait_for_function(f"{left}.join() === '30,30'")
+    beside.scroll_into_view_if_needed()
+    box = beside.bounding_box()
+    page.mouse.move(box["x"] + 80, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 40, box["y"] + 20)
+    page.mouse.up()
+    page.wait_for_function(f"{left}.join() === '70,70'")
+    page.keyboard.press("m")
+    assert page.locator("#mode").input_value() == "wipe"
+    assert not beside.is_visible()
 
 
 def test_size_is_marked_and_the_keys_change_it(page):

@@ -9,7 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from seatlook.cli._output import Json, note, progress, say, table
-from seatlook.cli._run import Changes, DryRun, Out, SingleFile, load
+from seatlook.cli._run import Changes, DryRun, Out, Scored, SingleFile, load
 from seatlook.errors import InputError
 
 
@@ -20,6 +20,7 @@ def compare(
     out: Out,
     result: Annotated[tuple[str, ...], Parameter(negative=())] = (),
     changes: Changes = (),
+    score: Scored = True,
     single_file: SingleFile = False,
     dry_run: DryRun = False,
     json: Json = False,
@@ -57,7 +58,10 @@ def compare(
     offscreen_backend()
     with progress() as show:
         comparison = run_compare(read, results=_results(result, names), keep=out, progress=show)
-        page = write_comparison(comparison, out, single_file=single_file, progress=show)
+        scores = comparison.visibility(show) if score else None
+        page = write_comparison(
+            comparison, out, scores=scores, single_file=single_file, progress=show
+        )
     found = comparison.table()
     table(found.heads, found.rows, json=json)
     note(f"gallery: {page}")

@@ -58,6 +58,27 @@ def number(value: float | str | None) -> str:
     return text.replace("-", "−")
 
 
+def column(values: Sequence[float | str | None]) -> tuple[str, ...]:
+    """Write a column of a table: as many decimals in all rows as give its largest three digits.
+
+    Examples
+    --------
+    >>> column([812.4, 40.25, None]), column([0.0949, 5.6e-5]), column(["none", 0.5])
+    (('812', '40', '–'), ('0.0949', '0.0001'), ('none', '0.500'))
+    """
+    known = [v for v in values if v is not None]
+    if all(isinstance(v, float) and math.isfinite(v) for v in known):
+        largest = max((abs(float(v)) for v in known), default=0.0)
+        if 1e-3 <= largest < 1e6:
+            digits = max(0, 2 - math.floor(math.log10(largest)))
+            # Adding 0 turns a rounded -0 into 0.
+            written = (
+                v if v is None else f"{round(float(v), digits) + 0.0:.{digits}f}" for v in values
+            )
+            return tuple("–" if text is None else text.replace("-", "−") for text in written)
+    return tuple(number(v) for v in values)
+
+
 def history_charts(history: Mapping[str, Sequence[float]]) -> tuple[Chart, ...]:
     """One chart for each column that changes, over "time" if given, else over the step number."""
     time = history.get("time")

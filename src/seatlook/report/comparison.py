@@ -21,6 +21,8 @@ from seatlook.wrinkle import ZoneRow, map_top, zone_table
 if TYPE_CHECKING:
     from ipywidgets import Widget
 
+    from seatlook.report.comparison_score import VariantScores
+
 _MEASURES = ("w2_mean", "w2_p95", "w2_area_share", "w_stretch_mean", "w_compression_mean")
 
 
@@ -161,6 +163,12 @@ class Comparison:
     def show(self, a: tuple[str, str, str], b: tuple[str, str, str]) -> Contrast:
         """Lay picture ``b`` over ``a``; a notebook shows a slider between them."""
         return Contrast(a=self[a], b=self[b])
+
+    def visibility(self, progress: Progress | None = None) -> VariantScores:
+        """Score every picture: a table of VWI, the largest difference first; takes minutes."""
+        from seatlook.report.comparison_score import score_variants
+
+        return score_variants(self, progress)
 
     def sliders(self) -> Widget:
         """Choose variant, texture and rig by sliders; needs the extra ``seatlook[notebook]``.

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
 from seatlook import __version__, files
 from seatlook.evaluation import MAPS, Progress, label, picture_path
+from seatlook.report.chart import number
 from seatlook.report.comparison import Comparison
-from seatlook.report.data import Check, MapView, PageData, Table
+from seatlook.report.comparison_score import VariantScores
+from seatlook.report.data import Check, MapView, PageData, ScoreSection, Spot, Table
 from seatlook.report.gather import rig_head
+from seatlook.report.in_short import above_one
 from seatlook.report.page import write_page
-from seatlook.report.parameters import parameter_tables
+from seatlook.report.parameters import parameter_tables, parameter_toml
+from seatlook.report.wrinkles import WrinkleSection, section_of
+from seatlook.study.findings import find
 
 _TABLES = {
     "W2 mean": "w2_mean",
@@ -21,44 +27,54 @@ _TABLES = {
     "W_compression mean": "w_compression_mean",
 }
 
+_VISIBILITY = "Visibility of wrinkles (VWI, in thresholds of a model observer)"
+_WORST = 3  # wrinkles of each variant
+
 
 def write_comparison(
     comparison: Comparison,
     folder: Path,
     *,
+    scores: VariantScores | None = None,
     single_file: bool = False,
     progress: Progress | None = None,
 ) -> Path:
     """Draw every cell and map into ``folder`` and write its ``index.html``.
+
+    Parameters
+    ----------
+    scores : how visible the wrinkles are, marked in the grid and compared; None leaves that out
 
     Returns
     -------
     Path
         The page.
     """
-    pictures, rows = {}, []
-    for variant in comparison.variants:
-        for texture in comparison.textures:
-            row = f"{variant}: {texture}"
-            rows.append(row)
-            for rig in comparison.rigs:
-                if progress is not None:
-                    progress("render", variant=variant, texture=texture, rig=rig)
-                path = f"variants/{picture_path(rig, variant).removeprefix('images/')}"
-                path = f"{Path(path).with_suffix('')}/{Path(picture_path(texture, rig)).name}"
-                files.write_bytes(folder / path, comparison[variant, texture, rig].png)
-                pictures[row, rig] = path
+    pictures = _pictures(comparison, folder, progress)
+    wrinkles = _wrinkles(comparison)
     data = PageData(
         title=" against ".join(comparison.variants),
         camera=comparison.camera.name,
         size=comparison.camera.size,
         pixels_per_degree=comparison.camera.pixels_per_degree,
-        textures=tuple(rows),
+        textures=tuple(dict.fromkeys(row for row, _ in pictures)),
         rigs=tuple(rig_head(rig) for rig in comparison.first.scene.rigs),
         pictures=MappingProxyType(pictures),
         maps=tuple(_maps(comparison, folder)),
         zones=comparison.table("w2_p95"),
-        differences=_differences(comparison),
+        differences=_differences(comparison, scores),
+        wrinkles=wrinkles,
+        spots=wrinkles.spots,
+        summary=tuple(_summary(comparison, scores)),
+        facing=_facing(comparison, scores),
+        score=None if scores is None else _marks(scores),
+        toml=MappingProxyType(
+            {
+                f"{name}, {owner}": text
+                for name, variant in comparison.variants.items()
+                for owner, text in parameter_toml(variant.scene).items()
+            }
+        ),
         parameters=MappingProxyType(
             {
                 f"{name}, {owner}": table
@@ -69,9 +85,110 @@ def write_comparison(
         provenance=MappingProxyType(dict(_provenance(comparison))),
         status=", ".join(f"{n} {v.solution.status}" for n, v in comparison.variants.items()),
         checks=tuple(_checks(comparison)),
-        warnings=tuple(_warnings(comparison)),
+        warnings=tuple(_warnings(comparison, scores)),
     )
     return write_page(data, folder, single_file=single_file)
+
+
+def _row(variant: str, texture: str) -> str:
+    return f"{variant}: {texture}"
+
+
+def _pictures(
+    comparison: Comparison, folder: Path, progress: Progress | None
+) -> dict[tuple[str, str], str]:
+    """Draw every cell; variants of one texture lie below each other, under the same light."""
+    pictures = {}
+    for texture in comparison.textures:
+        for variant in comparison.variants:
+            for rig in comparison.rigs:
+                if progress is not None:
+                    progress("render", variant=variant, texture=texture, rig=rig)
+                path = f"variants/{picture_path(rig, variant).removeprefix('images/')}"
+                path = f"{Path(path).with_suffix('')}/{Path(picture_path(texture, rig)).name}"
+                files.write_bytes(folder / path, comparison[variant, texture, rig].png)
+                pictures[_row(variant, texture), rig] = path
+    return pictures
+
+
+def _summary(comparison: Comparison, scores: VariantScores | None) -> Iterator[str]:
+    """How much each variant wrinkles, and where the others differ most from the first."""
+    shares = {name: above_one(v.zones) for name, v in comparison.variants.items()}
+    said = ", ".join(f"{name} {number(100 * share)} %" for name, share in shares.items())
+    yield f"W2 is above 1 on: {said} of the cover."
+    first, *others = comparison.variants
+    zone, *row = comparison.table("w2_mean").rows[0]
+    found = dict(zip(comparison.variants, row, strict=False))
+    away = dict(zip(others, row[len(found) :], strict=True))
+    known = {name: float(v) for name, v in away.items() if v is not None}
+    if known:
+        most = max(known, key=lambda name: abs(known[name]))
+        yield (
+            f"They differ most in {zone}: mean of W2 {number(found[most])} in {most}, "
+            f"{number(found[first])} in {first}."
+        )
+    if scores and scores.widest:
+        name, texture, rig = scores.widest
+        yield (
+            f"Visibility differs most for {texture} under {rig}: VWI "
+            f"{number(scores.vwi[name, texture, rig])} in {name}, "
+            f"{number(scores.vwi[first, texture, rig])} in {first}."
+        )
+
+
+def _facing(
+    comparison: Comparison, scores: VariantScores | None
+) -> tuple[tuple[str, str], tuple[str, str]]:
+    """The cells that differ most in visibility; without scores the first two variants' first."""
+    first, second, *_ = comparison.variants
+    widest = scores.widest if scores else None
+    variant, texture, rig = widest or (second, comparison.textures[0], comparison.rigs[0])
+    return (_row(first, texture), rig), (_row(variant, texture), rig)
+
+
+def _marks(scores: VariantScores) -> ScoreSection:
+    return ScoreSection(
+        cells=MappingProxyType(
+            {
+                (_row(variant, texture), rig): vwi
+                for (variant, texture, rig), vwi in scores.vwi.items()
+            }
+        )
+    )
+
+
+def _wrinkles(comparison: Comparison) -> WrinkleSection:
+    """The worst wrinkles of every variant, each with a section across it and its place."""
+    parts = {
+        name: section_of(
+            find(variant.solution, variant.indices, count=_WORST), comparison.camera, (), ()
+        )
+        for name, variant in comparison.variants.items()
+    }
+    heads = next(iter(parts.values())).worst.heads[1:]
+    return WrinkleSection(
+        worst=Table(
+            heads=("wrinkle", *heads),
+            rows=tuple(
+                (f"{name} {rank}", *cells)
+                for name, part in parts.items()
+                for rank, *cells in part.worst.rows
+            ),
+        ),
+        profiles=tuple(
+            replace(profile, name=f"{name}: {profile.name}")
+            for name, part in parts.items()
+            for profile in part.profiles
+        ),
+        distortion=None,
+        maps=(),
+        files=(),
+        spots=tuple(
+            Spot(label=f"{name}: {spot.label}", x=spot.x, y=spot.y)
+            for name, part in parts.items()
+            for spot in part.spots
+        ),
+    )
 
 
 def _maps(comparison: Comparison, folder: Path) -> Iterator[MapView]:
@@ -89,11 +206,14 @@ def _maps(comparison: Comparison, folder: Path) -> Iterator[MapView]:
             )
 
 
-def _differences(comparison: Comparison) -> MappingProxyType[str, Table]:
-    """Parameters that are not the same in all scenes, then zones, largest difference first."""
+def _differences(
+    comparison: Comparison, scores: VariantScores | None
+) -> MappingProxyType[str, Table]:
+    """Parameters that are not the same in all scenes, visibility, then zones, each sorted."""
     return MappingProxyType(
         {
             "Parameters that differ": _different_parameters(comparison),
+            **({_VISIBILITY: scores.table()} if scores and scores.vwi else {}),
             **{name: comparison.table(measure) for name, measure in _TABLES.items()},
         }
     )
@@ -125,10 +245,12 @@ def _checks(comparison: Comparison) -> Iterator[Check]:
         yield Check(name=name, value=status, limit="converged", kept=status == "converged")
 
 
-def _warnings(comparison: Comparison) -> Iterator[str]:
+def _warnings(comparison: Comparison, scores: VariantScores | None) -> Iterator[str]:
     for name, variant in comparison.variants.items():
         if variant.solution.status != "converged":
             yield f"{name} is not converged: {variant.solution.reason}."
+    for name, reason in (scores.refused if scores else {}).items():
+        yield f"{name} has no score: {reason}"
     cameras = {v.scene.cameras[0].name for v in comparison.variants.values()}
     if len(cameras) > 1:
         yield f"All pictures are taken from {comparison.camera.name}, the first variant's view."

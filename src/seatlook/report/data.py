@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from seatlook.errors import InputError
-from seatlook.report.chart import number
+from seatlook.report.chart import column
 
 if TYPE_CHECKING:
     from seatlook.report.design import DesignSection
@@ -115,11 +115,24 @@ class Table:
                     expected=f"{len(self.heads)}: {', '.join(self.heads)}",
                 )
 
+    @property
+    def texts(self) -> tuple[tuple[str, ...], ...]:
+        """The rows as they are read: a column has the same decimals in every row."""
+        return tuple(zip(*map(column, zip(*self.rows, strict=True)), strict=True))
+
+    @property
+    def numeric(self) -> tuple[bool, ...]:
+        """Whether a column holds numbers, which are aligned to the right."""
+        return tuple(
+            any(isinstance(v, int | float) for v in values)
+            for values in zip(self.heads, *self.rows, strict=True)
+        )
+
     def _repr_html_(self) -> str:
         heads = "".join(f"<th>{escape(head)}</th>" for head in self.heads)
         rows = "".join(
-            "<tr>" + "".join(f"<td>{escape(number(value))}</td>" for value in row) + "</tr>"
-            for row in self.rows
+            "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>"
+            for row in self.texts
         )
         return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
 
@@ -188,6 +201,8 @@ class PageData:
     checks : solver conditions and accept limits
     status : the solver's own word, such as "converged"
     warnings : sentences that must be read before the pictures are believed
+    summary : sentences that answer the page's questions, above everything else
+    facing : the two cells that are compared first; the first two of the grid if not given
     history : column -> values, one per solver step; "time" is the horizontal axis if present
     files : paths of what else lies in the folder, such as "zones.csv"
     """
@@ -219,6 +234,8 @@ class PageData:
         default_factory=lambda: MappingProxyType({})
     )
     files: tuple[str, ...] = ()
+    summary: tuple[str, ...] = ()
+    facing: tuple[tuple[str, str], tuple[str, str]] | None = None
 
     def __post_init__(self) -> None:
         cells = {(texture, rig.name) for texture in self.textures for rig in self.rigs}
@@ -242,6 +259,12 @@ class PageData:
         alone = (view.alone for view in self.views if view.alone)
         made = self.making.pictures if self.making else ()
         return (*self.pictures.values(), *(view.image for view in self.views), *alone, *made)
+
+    @property
+    def compared(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Cells (texture, rig) that stand as A and B when the page opens."""
+        cells = [(texture, rig.name) for texture in self.textures for rig in self.rigs]
+        return self.facing or (cells[0], cells[min(1, len(cells) - 1)])
 
     @property
     def lights(self) -> tuple[Dot, ...]:

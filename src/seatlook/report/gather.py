@@ -67,7 +67,13 @@ def write_report(
     evaluation: Evaluation, *, score: ScoreSection | None = None, single_file: bool = False
 ) -> Path:
     """Write the gallery page of an evaluation into its folder and return its path."""
-    data = replace(page_data(evaluation), score=score)
+    data = page_data(evaluation)
+    summary = (
+        *wrinkled(evaluation.zones),
+        *seen(score.cells if score else {}),
+        *missed((*_limits(evaluation), *(score.checks if score else ()))),
+    )
+    data = replace(data, score=score, summary=summary)
     return write_page(data, evaluation.folder, single_file=single_file)
 
 

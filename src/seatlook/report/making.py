@@ -32,6 +32,11 @@ class MakingSection:
     over: tuple[str, ...]
     pictures: tuple[str, ...]
 
+    @property
+    def shown(self) -> bool:
+        """Whether there is anything to show."""
+        return bool(self.work or self.hooks.rows or self.pictures)
+
 
 def making_section(solution: Solution, folder: Path) -> MakingSection:
     """Gather the section; pictures are those that are in ``folder`` already."""

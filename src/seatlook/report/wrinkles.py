@@ -61,7 +61,7 @@ class WrinkleSection:
     ----------
     worst : one row per wrinkle, the worst first; no row where nothing is above the threshold
     profiles : the section across each
-    distortion : one row per zone
+    distortion : one row per zone; None on a page of several variants
     maps : W2 net, distortion of the texture, a checker
     files : tables beside the page
     spots : where the worst wrinkles are in the pictures
@@ -69,7 +69,7 @@ class WrinkleSection:
 
     worst: Table
     profiles: tuple[Profile, ...]
-    distortion: Table
+    distortion: Table | None
     maps: tuple[MapView, ...]
     files: tuple[str, ...]
     spots: tuple[Spot, ...] = ()
@@ -166,7 +166,7 @@ def _distortion(found: Findings) -> Table:
         _, factor, _ = DISTORTION_MAPS[row.measure]
         low, high = factor * row.p05, factor * row.p95
         zones.setdefault(row.zone, []).extend(
-            (factor * row.mean, f"{number(low)} to {number(high)}")
+            (factor * row.mean, f"{low:.2f} to {high:.2f}".replace("-", "−").replace(" ", "\u00a0"))
         )
     heads = ["zone"]
     for name, (unit, _, _) in DISTORTION_MAPS.items():

@@ -2,28 +2,33 @@
 (() => {
   const get = (id) => document.getElementById(id);
   const all = (selector) => [...document.querySelectorAll(selector)];
-  const sheet = document.querySelector(".sheet");
+  const sheet = get("sheet");
   const stage = get("stage");
+  const beside = get("beside");
   const cut = get("cut");
   const choice = { a: get("choice-a"), b: get("choice-b") };
-  const picture = { a: get("picture-a"), b: get("picture-b") };
-  const overlay = { choice: get("overlay"), picture: get("picture-o"), opacity: get("opacity") };
+  const pictures = { a: [get("picture-a")], b: [get("picture-b"), get("picture-beside")] };
+  const overlay = { choice: get("overlay"), pictures: all(".over"), opacity: get("opacity") };
   const chosen = (select) => select.selectedOptions[0].textContent;
   const source = (key) => get(key).src;
-  const width = Number(picture.a.getAttribute("width"));
+  const width = Number(pictures.a[0].getAttribute("width"));
 
   // What is shown.
   function show() {
-    for (const side of ["a", "b"]) {
-      picture[side].src = source(choice[side].value);
-      picture[side].alt = `${side.toUpperCase()}: ${chosen(choice[side])}`;
+    for (const [side, images] of Object.entries(pictures)) {
+      for (const image of images) {
+        image.src = source(choice[side].value);
+        image.alt = `${side.toUpperCase()}: ${chosen(choice[side])}`;
+      }
     }
     const over = overlay.choice.value;
-    overlay.picture.hidden = !over;
     overlay.opacity.disabled = !over;
-    overlay.picture.src = source(over || choice.a.value);
-    overlay.picture.alt = over ? `Over it: ${chosen(overlay.choice)}` : "";
-    overlay.picture.style.opacity = `${overlay.opacity.value}%`;
+    for (const image of overlay.pictures) {
+      image.hidden = !over;
+      image.src = source(over || choice.a.value);
+      image.alt = over ? `Over it: ${chosen(overlay.choice)}` : "";
+      image.style.opacity = `${overlay.opacity.value}%`;
+    }
     get("said").textContent = `A: ${chosen(choice.a)}. B: ${chosen(choice.b)}.`
       + (over ? ` Over both: ${chosen(overlay.choice)}.` : "");
     for (const light of all("[data-rig]")) {
@@ -43,11 +48,22 @@
     get("flip").setAttribute("aria-pressed", String(on));
   }
   const move = () => sheet.style.setProperty("--cut", `${cut.value}%`);
+  const cuts = () => ["wipe", "blend"].includes(sheet.dataset.mode);
   function mode() {
     sheet.dataset.mode = get("mode").value;
-    cut.disabled = sheet.dataset.mode === "difference";
+    beside.hidden = sheet.dataset.mode !== "side";
+    cut.disabled = !cuts();
     move();
+    scale();
+    follow(stage, beside);
   }
+  function nextMode() {
+    const select = get("mode");
+    select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
+    mode();
+  }
+  // Both panes show the same place.
+  const follow = (one, other) => other.scrollTo(one.scrollLeft, one.scrollTop);
 
   // The same picture of A under another light.
   function light(rig) {
@@ -59,7 +75,7 @@
 
   // Size: one image pixel is one screen pixel at 1:1, whatever the display's scale.
   function scale() {
-    const now = picture.a.getBoundingClientRect().width * window.devicePixelRatio / width;
+    const now = pictures.a[0].getBoundingClientRect().width * window.devicePixelRatio / width;
     const seen = Number(get("scale").dataset.density) * now;
     get("scale").textContent = Math.abs(now - 1) < 0.005
       ? "1:1, as scored"
@@ -68,8 +84,10 @@
   function zoom() {
     const times = get("zoom").value;
     const fits = times === "fit";
-    sheet.style.width = fits ? "" : `${width * Number(times) / window.devicePixelRatio}px`;
-    if (fits) delete sheet.dataset.zoom; else sheet.dataset.zoom = times;
+    for (const one of all(".sheet")) {
+      one.style.width = fits ? "" : `${width * Number(times) / window.devicePixelRatio}px`;
+      if (fits) delete one.dataset.zoom; else one.dataset.zoom = times;
+    }
     scale();
   }
   function enlarge(step) {
@@ -78,18 +96,25 @@
     zoomed.selectedIndex = index;
     zoom();
   }
+  let last = -1;
   function jump(button) {
+    last = jumps.indexOf(button);
     get("zoom").value = "2";
     zoom();
     const times = sheet.clientWidth / width;
     const [x, y] = [Number(button.dataset.x) * times, Number(button.dataset.y) * times];
-    get("spot").hidden = false;
-    get("spot").style.left = `${x}px`;
-    get("spot").style.top = `${y}px`;
+    for (const spot of all(".spot")) {
+      spot.hidden = false;
+      spot.style.left = `${x}px`;
+      spot.style.top = `${y}px`;
+    }
     stage.scrollTo(x - stage.clientWidth / 2, y - stage.clientHeight / 2);
     get("compare").scrollIntoView();
     stage.focus();
   }
+
+  const jumps = all("[data-x]");
+  const nextJump = () => { if (jumps.length) jump(jumps[(last + 1) % jumps.length]); };
 
   // Dragging moves the border near it, and the picture elsewhere.
   let held = null;
@@ -97,7 +122,8 @@
     if (event.button !== 0 || event.pointerType === "touch") return;
     const box = sheet.getBoundingClientRect();
     const away = Math.abs(event.clientX - box.left - box.width * cut.value / 100);
-    const pans = sheet.dataset.zoom !== undefined && (sheet.dataset.mode !== "wipe" || away > 24);
+    const near = cuts() && (sheet.dataset.zoom === undefined || sheet.dataset.mode === "wipe" && away <= 24);
+    const pans = !near;
     held = { pans, x: event.clientX, y: event.clientY, left: stage.scrollLeft, top: stage.scrollTop };
     drag(event);
   }
@@ -105,7 +131,7 @@
     if (!held || event.buttons !== 1) return;
     if (held.pans) {
       stage.scrollTo(held.left + held.x - event.clientX, held.top + held.y - event.clientY);
-    } else if (sheet.dataset.mode !== "difference") {
+    } else {
       const box = sheet.getBoundingClientRect();
       cut.value = String(Math.round(100 * (event.clientX - box.left) / box.width));
       move();
@@ -158,7 +184,6 @@
     }
   }
 
-  choice.b.selectedIndex = Math.min(1, choice.b.options.length - 1);
   for (const select of [choice.a, choice.b, overlay.choice]) select.addEventListener("change", show);
   overlay.opacity.addEventListener("input", show);
   for (const button of all("[data-pick]")) {
@@ -174,7 +199,7 @@
       light(mark.dataset.rig);
     });
   }
-  for (const button of all("[data-x]")) button.addEventListener("click", () => jump(button));
+  for (const button of jumps) button.addEventListener("click", () => jump(button));
   for (const button of all("[data-copy]")) button.addEventListener("click", () => copy(button));
   for (const part of all(".scripted")) part.hidden = false;
   cut.addEventListener("input", move);
@@ -189,15 +214,20 @@
   for (const end of ["pointerup", "pointerleave", "blur"]) {
     get("hold").addEventListener(end, () => flip(false));
   }
-  stage.addEventListener("pointerdown", press);
-  stage.addEventListener("pointermove", drag);
-  stage.addEventListener("dragstart", (event) => event.preventDefault());
+  for (const [pane, other] of [[stage, beside], [beside, stage]]) {
+    pane.addEventListener("pointerdown", press);
+    pane.addEventListener("pointermove", drag);
+    pane.addEventListener("dragstart", (event) => event.preventDefault());
+    pane.addEventListener("scroll", () => follow(pane, other));
+  }
   window.addEventListener("pointerup", () => { held = null; });
   window.addEventListener("resize", scale);
 
   const keys = {
     f: () => flip(sheet.dataset.flip !== "b"),
     s: swap,
+    m: nextMode,
+    n: nextJump,
     t: turn,
     "+": () => enlarge(1),
     "-": () => enlarge(-1),
@@ -205,7 +235,7 @@
     0: () => { get("zoom").value = "fit"; zoom(); },
     "?": () => get("keys").showModal(),
   };
-  const holds = (event) => event.key === " " && [stage, get("hold")].includes(event.target);
+  const holds = (event) => event.key === " " && [stage, beside, get("hold")].includes(event.target);
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
     if (holds(event)) {
