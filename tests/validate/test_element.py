@@ -81,8 +81,8 @@ def test_false_bending(kind, report):
     angles = (0.0, 20.0, 45.0, 80.0, 130.0)
     worst = [max((false_bending(kind, n, degrees=d) for d in angles), key=abs) for n in (8, 16)]
     report(f"{kind}: c of the worst of five directions {worst[0]:+.5f} {worst[1]:+.5f}")
-    # The bar is that of unstructured meshes; the others are bound with their own figures.
-    assert max(map(abs, worst)) <= {"uns": 1e-3, "sliver": 3e-3}.get(kind, 2e-3)
+    # The bar is that of unstructured meshes; where long edges all lie one way it is missed.
+    assert max(map(abs, worst)) <= {"uns": 1e-4, "cross": 1e-3, "sliver": 3e-3}.get(kind, 2e-3)
 
 
 @pytest.mark.parametrize("kind", meshes.KINDS)
