@@ -65,6 +65,25 @@ def height_beside_seam(solution, fitting) -> float:
     return float((height - trend @ np.linalg.lstsq(trend, height, rcond=None)[0]).std())
 
 
+def test_patterns_are_cut_small_as_asked(tmp_path):
+    length = {}
+    for tension in (0.0, 0.02):
+        write_demo(
+            tmp_path / f"{tension}",
+            ease={},
+            starve={},
+            tension=tension,
+            material="black-leather",
+            insert="black-leather",
+            element_size_mm=20.0,
+            seed=0,
+            surface_size=0.02,
+        )
+        pattern = io.load_scene(tmp_path / f"{tension}" / "scene.toml").pattern
+        length[tension] = np.array([pattern.edge_length(name) for name in pattern.edges])
+    np.testing.assert_allclose(length[0.02] / length[0.0], 0.98, atol=2e-3)
+
+
 @pytest.mark.validate
 def test_an_ease_error_raises_compression_in_its_seam_band(tmp_path):
     band, profile, fitting = {}, {}, None

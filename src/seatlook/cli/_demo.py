@@ -14,9 +14,6 @@ from seatlook.errors import InputError
 if TYPE_CHECKING:
     from seatlook.design import Flattened
 
-# Covers are cut a little smaller than the foam, so that they lie taut.
-_DEMO_TENSION = 0.01
-
 Shares = Annotated[tuple[str, ...], Parameter(negative=())]
 
 
@@ -153,7 +150,7 @@ def write_demo(
     with progress() as show:
         show("flatten")
         surface = design.demo_design(element_size=surface_size)
-        flat = design.flatten(surface, tension=_DEMO_TENSION, ease=ease, starve=starve)
+        flat = design.flatten(surface, tension=tension, ease=ease, starve=starve)
         foam = design.demo_foam_mesh(element_size=surface_size, cover_thickness=thickness)
     io.write_surface(
         io.GroupedMesh(surface.vertices, surface.faces, surface.panel, surface.panel_names),
