@@ -374,8 +374,11 @@ def test_foam_in_the_wrong_unit(refused, folder, unit, size):
     scale = 1e-3 if unit == "mm" else 1e3
     corners, faces = box()
     write_obj(scale * corners, faces, folder / "foam.obj")
-    got, _ = refused(('unit = "mm"', 'unit = "mm"'))
-    assert got[0].startswith(f"foam.obj: size: got {size} m, expected 0.05 to 3 m")
+    got, line = refused(('unit = "mm"', 'unit = "mm"'))
+    assert got[0].startswith(
+        f'scene.toml:{line("unit = ")}: foam.unit: got "mm", by which foam.obj is {size} m wide, '
+        "expected 0.05 to 3 m"
+    )
     assert 'is it "m"?' in got[0]
 
 

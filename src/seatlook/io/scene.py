@@ -183,7 +183,12 @@ class _Reader:
                 curves=curves,
             )
         except InputError as error:
-            self.document.note(("foam",), error)
+            wrong = [p for p in error.problems if p.key == "size"]
+            for p in wrong:
+                got = f'"{row["unit"]}", by which {path.name} is {p.got} wide'
+                self.document.report(("foam", "unit"), got, p.expected, p.hint)
+            if not wrong:
+                self.document.note(("foam",), error)
             return None
 
     def design(self) -> Design | None:
