@@ -1,12 +1,16 @@
 from pathlib import Path
 from types import MappingProxyType
 
+import ezdxf
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from seatlook.design import demo_design, flatten
 from seatlook.io.dxf import read_dxf
 from seatlook.io.dxf_write import write_dxf
+from seatlook.io.seams import read_pattern, write_seams
 from seatlook.model import Notch, Panel, Pattern
 
 DATA = Path(__file__).parents[1] / "data"
@@ -79,3 +83,20 @@ def test_any_star_shaped_outline_reads_back(tmp_path_factory, radii, turn):
     write_dxf(pattern_of(a), path)
     (b,) = read_dxf(path)
     assert_same(a, b)
+
+
+def test_flattened_demo_reads_back_to_a_hundredth_of_a_millimetre(tmp_path):
+    """And the library's audit of the drawing finds nothing to mend or to refuse."""
+    flat = flatten(demo_design(element_size=0.012))
+    write_dxf(flat.pattern, tmp_path / "p.dxf", style="demo")
+    write_seams(flat.pattern, tmp_path / "s.toml")
+    again = read_pattern(tmp_path / "p.dxf", tmp_path / "s.toml")
+    assert again.edges.keys() == flat.pattern.edges.keys()
+    for name in flat.pattern.edges:
+        assert again.edge_length(name) == pytest.approx(flat.pattern.edge_length(name), abs=1e-5)
+    drawing = ezdxf.readfile(tmp_path / "p.dxf")
+    assert drawing.dxfversion == "AC1009"
+    audit = drawing.audit()
+    assert [e.message for e in audit.errors] == []
+    assert [e.message for e in audit.fixes] == []
+    assert len(drawing.blocks) >= len(flat.pattern.panels)

@@ -85,12 +85,14 @@ def flatten(
     starve: Shares = (),
     tension_percent: float = 0.0,
     allowance_mm: float = 10.0,
+    material: str | None = None,
     json: Json = False,
 ) -> None:
     """Cut a design surface along its panels' borders and flatten them into a pattern.
 
-    Writes pattern.dxf (AAMA), seams.toml and placement.toml, whose tables go into a scene; prints
-    the strain that each panel takes when it is laid back onto the surface.
+    Writes pattern.dxf (AAMA), seams.toml and placement.toml, whose tables go into a scene, and
+    pictures and seam-lengths.csv; prints the strain that each panel takes when it is laid back onto
+    the surface.
 
     Example: seatlook flatten cushion.obj --out pattern --ease INSERT-BOLSTER_L=2%
 
@@ -106,12 +108,18 @@ def flatten(
         All panels are cut smaller by this share, so that the cover is taut.
     allowance_mm
         Seam allowance and hem round every panel.
+    material
+        What all panels are made of, a supplied name or a file: they take the least strain energy of
+        that fabric, by its curves. That of an isotropic sheet, if not given.
     """
     from seatlook import design, files, io
+    from seatlook.study.strain_map import write_strain_maps
 
-    read = io.read_surface(surface, unit=unit)
+    form = design.DesignSurface(**io.read_surface(surface, unit=unit)._asdict())
+    fabric = None if material is None else io.read_material(material).fabric
     flat = design.flatten(
-        design.DesignSurface(**read._asdict()),
+        form,
+        fabrics={} if fabric is None else dict.fromkeys(form.panel_names, fabric),
         allowance=allowance_mm / 1e3,
         ease=_shares("--ease", ease),
         starve=_shares("--starve", starve),
@@ -119,11 +127,14 @@ def flatten(
     )
     _write_pattern(flat, out)
     files.write_text(out / "placement.toml", _placement(flat) + "\n")
-    table(
-        ("panel", "area_cm2", "strain_mean", "strain_rms", "strain_smallest", "strain_largest"),
-        [(p.panel, 1e4 * p.area, p.mean, p.rms, p.smallest, p.largest) for p in flat.panels],
-        json=json,
-    )
+    _write_seam_lengths(flat, out / "seam-lengths.csv")
+    note(f"pictures of the strain: {write_strain_maps(form, flat, out)[0].parent}")
+    heads = ["panel", "area_cm2", "strain_mean", "strain_rms", "strain_smallest", "strain_largest"]
+    rows = [[p.panel, 1e4 * p.area, p.mean, p.rms, p.smallest, p.largest] for p in flat.panels]
+    if fabric is not None:
+        heads.append("energy_mj")
+        rows = [[*r, 1e3 * (p.energy or 0.0)] for r, p in zip(rows, flat.panels, strict=True)]
+    table(heads, rows, json=json)
 
 
 def write_demo(
@@ -177,6 +188,15 @@ def _write_pattern(flat: Flattened, out: Path) -> None:
 
     io.write_dxf(flat.pattern, out / "pattern.dxf", style="seatlook")
     io.write_seams(flat.pattern, out / "seams.toml")
+
+
+def _write_seam_lengths(flat: Flattened, path: Path) -> None:
+    """Write both lines of every seam, and that on the design, in mm."""
+    from seatlook import io
+
+    rows = [(s.seam, s.a, s.b, s.difference, s.design) for s in flat.seams]
+    heads = ("seam", "a_mm", "b_mm", "difference_mm", "design_mm")
+    io.write_table(path, heads, [(name, *(1e3 * v for v in values)) for name, *values in rows])
 
 
 def _placement(flat: Flattened) -> str:

@@ -9,18 +9,26 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook import mesh
+from seatlook.design.fabric_sheet import fabric_energy
 from seatlook.design.lengths import agreed_ratios, relaxed
 from seatlook.design.pattern import pair, sewing_pattern
 from seatlook.design.placement import place
-from seatlook.design.relax import flatten_patch, stretches
+from seatlook.design.relax import flatten_patch, strains_by_grain, stretches
 from seatlook.design.surface import FREE, DesignSurface, Patch, Side, sides
-from seatlook.errors import InputError, Problem, did_you_mean
-from seatlook.model import FloatArray, Pattern, Pose
+from seatlook.errors import InputError, Problem, SeatlookError, did_you_mean
+from seatlook.model import Fabric, FloatArray, Pattern, Pose
+
+SEAM_TOLERANCE = 5e-5  # [m] by which the two lines of a seam may differ in length
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PanelStrain:
-    """Strain a flat panel takes when laid onto its patch, area-weighted, from both principals."""
+    """Strain a flat panel takes when laid onto its patch, area-weighted, from both principals.
+
+    Parameters
+    ----------
+    energy : float [J]     stored by this in the fabric given, compression counting as tension
+    """
 
     panel: str
     area: float
@@ -28,6 +36,7 @@ class PanelStrain:
     rms: float
     smallest: float
     largest: float
+    energy: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +65,7 @@ class Flattened:
     flat : panel name -> (n, 2) [m]         pattern position of each vertex of the panel's patch
     strain : (m, 2) float64 [1]             per face of the surface, small principal first;
                                             positive where the panel is stretched by the form
+    grain_strain : (m, 3) float64 [1]       Green strain along warp, weft, and the angle between
     panels : tuple of PanelStrain
     seams : tuple of SeamLengths
     """
@@ -64,6 +74,7 @@ class Flattened:
     placement: MappingProxyType[str, Pose]
     flat: MappingProxyType[str, FloatArray]
     strain: FloatArray
+    grain_strain: FloatArray
     panels: tuple[PanelStrain, ...]
     seams: tuple[SeamLengths, ...]
 
@@ -76,6 +87,7 @@ def flatten(
     ease: Mapping[str, float] = MappingProxyType({}),
     starve: Mapping[str, float] = MappingProxyType({}),
     seam_strain: float = 0.015,
+    fabrics: Mapping[str, Fabric] = MappingProxyType({}),
 ) -> Flattened:
     """Flatten every panel of a design surface and make a sewable pattern of them.
 
@@ -96,6 +108,9 @@ def flatten(
         The panel becomes narrower across its grain.
     seam_strain : float
         Largest share of the strain that a seam line may take.
+    fabrics : panel name -> Fabric
+        What the panel is made of: it takes the least strain energy of that, by its curves along
+        warp and weft and in shear. A panel without takes that of an isotropic sheet.
 
     Returns
     -------
@@ -106,7 +121,8 @@ def flatten(
     InputError
         A panel is not a disk; ``ease`` or ``starve`` name nothing or ask too much.
     SeatlookError
-        A panel cannot be flattened without folding.
+        A panel cannot be flattened without folding, or the lines of a seam differ by more than
+        ``SEAM_TOLERANCE`` though none of them is eased.
     """
     patches = surface.patches()
     borders = sides(patches)
@@ -117,15 +133,29 @@ def flatten(
     _check("starve", starve, surface.panel_names)
     _check("tension", {"": tension}, [""])
 
-    alone = {p.name: flatten_patch(p.vertices, p.faces) for p in patches}
+    _check("fabrics", dict.fromkeys(fabrics, 0.0), surface.panel_names)
+
+    alone = {p.name: _alone(p, fabrics.get(p.name)) for p in patches}
     ratio = agreed_ratios(patches, borders, alone, limit=seam_strain)
     flat = {}
     for patch in patches:
         own = [s for s in borders if s.panel == patch.name and s.neighbour != FREE]
-        x = relaxed(patch, own, ratio, alone[patch.name], ease)
-        x = _grain_up(patch, x) * (1 - tension)
+        fabric = fabrics.get(patch.name)
+        x = relaxed(patch, own, ratio, alone[patch.name], ease, fabric=fabric)
+        # A panel of a fabric has kept the direction in which its grain was laid.
+        x = (_grain_up(patch, x) if fabric is None else x) * (1 - tension)
         flat[patch.name] = x * [1 - starve.get(patch.name, 0.0), 1.0]
-    return _report(surface, patches, borders, _side_by_side(flat), allowance)
+    found = _report(surface, patches, borders, _side_by_side(flat), allowance, fabrics)
+    _check_seams(found, spoiled={*ease, *starve})
+    return found
+
+
+def _alone(patch: Patch, fabric: Fabric | None) -> FloatArray:
+    """Flatten a panel by itself; of a fabric with its grain laid."""
+    x = flatten_patch(patch.vertices, patch.faces)
+    if fabric is None:
+        return x
+    return flatten_patch(patch.vertices, patch.faces, start=_grain_up(patch, x), fabric=fabric)
 
 
 def _report(
@@ -134,14 +164,19 @@ def _report(
     borders: tuple[Side, ...],
     flat: dict[str, FloatArray],
     allowance: float,
+    fabrics: Mapping[str, Fabric],
 ) -> Flattened:
     """Collect pattern, poses and figures."""
     strain = np.empty((len(surface.faces), 2))
+    by_grain = np.empty((len(surface.faces), 3))
     panels = []
     for i, patch in enumerate(patches):
-        own = stretches(patch.vertices, patch.faces, flat[patch.name]) - 1
-        strain[surface.panel == i] = own
-        panels.append(_panel_strain(patch, own))
+        mine, form = surface.panel == i, (patch.vertices, patch.faces, flat[patch.name])
+        strain[mine] = stretches(*form) - 1
+        by_grain[mine] = strains_by_grain(*form)
+        fabric = fabrics.get(patch.name)
+        stored = None if fabric is None else fabric_energy(by_grain[mine], fabric)
+        panels.append(_panel_strain(patch, strain[mine], stored))
     pattern = sewing_pattern(patches, borders, flat, allowance)
     design = {s.name: float(mesh.arc_length(surface.vertices[s.vertices])[-1]) for s in borders}
     return Flattened(
@@ -149,6 +184,7 @@ def _report(
         placement=MappingProxyType({p.name: place(p, flat[p.name]) for p in patches}),
         flat=MappingProxyType(flat),
         strain=strain,
+        grain_strain=by_grain,
         panels=tuple(panels),
         seams=tuple(
             SeamLengths(
@@ -162,7 +198,7 @@ def _report(
     )
 
 
-def _panel_strain(patch: Patch, strain: FloatArray) -> PanelStrain:
+def _panel_strain(patch: Patch, strain: FloatArray, stored: FloatArray | None) -> PanelStrain:
     area = mesh.face_areas(patch.vertices, patch.faces)
     share = area[:, None] / (2 * area.sum())
     return PanelStrain(
@@ -172,7 +208,21 @@ def _panel_strain(patch: Patch, strain: FloatArray) -> PanelStrain:
         rms=float(np.sqrt((share * strain**2).sum())),
         smallest=float(strain.min()),
         largest=float(strain.max()),
+        energy=None if stored is None else float(area @ stored),
     )
+
+
+def _check_seams(found: Flattened, *, spoiled: set[str]) -> None:
+    """Refuse lines of a seam that are not equally long though nobody asked for it."""
+    for seam, sewn in zip(found.seams, found.pattern.seams, strict=True):
+        edges = {sewn.a, *sewn.b}
+        if spoiled & (edges | {found.pattern.edges[name].panel for name in edges}):
+            continue
+        if abs(seam.difference) > SEAM_TOLERANCE:
+            raise SeatlookError(
+                f"seam {seam.seam}: its lines are {1e3 * seam.a:.3f} and {1e3 * seam.b:.3f} mm "
+                f"long, more than {1e3 * SEAM_TOLERANCE:g} mm apart"
+            )
 
 
 def _check(key: str, wanted: Mapping[str, float], known: Sequence[str]) -> None:

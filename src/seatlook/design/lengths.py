@@ -11,7 +11,7 @@ from seatlook.design.pattern import pair
 from seatlook.design.relax import HeldEdges, flatten_patch
 from seatlook.design.surface import Patch, Side
 from seatlook.errors import SeatlookError
-from seatlook.model import FloatArray
+from seatlook.model import Fabric, FloatArray
 
 # [m] over which the stretch beside an eased sewing line fades out. A linear fade over a strip is
 # a bend in the plane, which costs no strain; a shorter one drives the ease to the line's ends.
@@ -48,6 +48,8 @@ def relaxed(
     ratio: Mapping[str, FloatArray],
     alone: FloatArray,
     ease: Mapping[str, float],
+    *,
+    fabric: Fabric | None = None,
 ) -> FloatArray:
     """Flatten one panel with its seam lengths held, eased sides at their length in total.
 
@@ -55,7 +57,7 @@ def relaxed(
     """
     eased = [side for side in own if side.name in ease]
     held = _held(patch, [side for side in own if side.name not in ease], ratio)
-    x = flatten_patch(patch.vertices, patch.faces, held, start=alone)
+    x = flatten_patch(patch.vertices, patch.faces, held, start=alone, fabric=fabric)
     if not eased:
         return x
     agreed = np.array([_steps(patch.vertices[s.indices(patch)]) @ ratio[s.name] for s in eased])
@@ -68,7 +70,7 @@ def relaxed(
         step = (wanted - found) / slope
         amount = amount + step
         growth = _growth(patch, eased, amount)
-        x = flatten_patch(patch.vertices, patch.faces, held, growth=growth, start=x)
+        x = flatten_patch(patch.vertices, patch.faces, held, growth=growth, start=x, fabric=fabric)
         before, found = found, _lengths(patch, x, eased)
         slope = np.where(step == 0, slope, (found - before) / np.where(step == 0, 1.0, step))
     raise SeatlookError(f"panel {patch.name} does not take on the ease of its sewing lines")

@@ -8,9 +8,10 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
+from seatlook.design.fabric_sheet import Rows, fabric_rows, grain_strain
 from seatlook.errors import SeatlookError
 from seatlook.mesh import face_areas, face_normals
-from seatlook.model import FloatArray, IntArray
+from seatlook.model import Fabric, FloatArray, IntArray
 
 _MAX_STEPS = 100
 _SETTLED = 1e-7  # [m]; near the end steps shrink by 7 % at worst, so 2e-6 m are left
@@ -33,11 +34,14 @@ def flatten_patch(
     *,
     growth: FloatArray | None = None,
     start: FloatArray | None = None,
+    fabric: Fabric | None = None,
 ) -> FloatArray:
     """Return flat positions (n, 2) [m] of least strain energy with edges of given length.
 
-    Energy of an isotropic sheet without Poisson effect, ``sum A |G|^2`` with the Green strain
-    ``G = (F^T F - I) / 2`` of the map from space to the plane.
+    Without a fabric that of an isotropic sheet without Poisson effect, ``sum A |G|^2`` with the
+    Green strain ``G = (F^T F - I) / 2`` of the map from space to the plane. With one that of the
+    fabric laid onto the form, ``sum A psi(E)`` with the strain E of the map from the plane to
+    space, warp along the second axis; the patch then keeps the direction of ``start``.
 
     Parameters
     ----------
@@ -45,6 +49,7 @@ def flatten_patch(
     held : edges with a length of their own; None for none
     growth : (m, 3, 3)   symmetric stretch that each face is to have in the plane; None for none
     start : (n, 2) [m]   first guess; None takes the conformal map
+    fabric : warp, weft and shear curves; compression counts as tension does
 
     Raises
     ------
@@ -57,7 +62,8 @@ def flatten_patch(
         gradient = _grown(gradient, growth, _axes(vertices, faces))
     area = face_areas(vertices, faces)
     x = conformal_map(vertices, faces) if start is None else start
-    value, residual, jacobian = _energy(x, gradient, area, held)
+    energy = _Energy(gradient, area, held, fabric, _chord(x))
+    value, residual, jacobian = energy.at(x)
     for _ in range(_MAX_STEPS):
         normal = (jacobian.T @ jacobian).tocsc()
         # Rigid motions cost nothing: a trace of damping makes the matrix regular.
@@ -66,7 +72,7 @@ def flatten_patch(
         scale = 1.0
         while True:
             trial = x + scale * step
-            new, residual, jacobian = _energy(trial, gradient, area, held)
+            new, residual, jacobian = energy.at(trial)
             if new <= value or scale < 1e-4:
                 break
             scale /= 2
@@ -111,6 +117,11 @@ def stretches(vertices: FloatArray, faces: IntArray, flat: FloatArray) -> FloatA
     return np.asarray(1 / np.linalg.svd(F, compute_uv=False))
 
 
+def strains_by_grain(vertices: FloatArray, faces: IntArray, flat: FloatArray) -> FloatArray:
+    """Return Green strains (m, 3) of the map from flat to space: warp, weft, angle 2 E12."""
+    return grain_strain(flat, _gradient(vertices, faces))
+
+
 def _gradient(vertices: FloatArray, faces: IntArray) -> tuple[sp.csr_array, sp.csr_array]:
     """Operators (m, n) for the derivative along each face's own two axes."""
     p = vertices[faces]
@@ -153,16 +164,66 @@ def _deformation(x: FloatArray, gradient: tuple[sp.csr_array, sp.csr_array]) -> 
     return np.stack([g @ x for g in gradient], axis=2)
 
 
-def _energy(
-    x: FloatArray,
-    gradient: tuple[sp.csr_array, sp.csr_array],
-    area: FloatArray,
-    held: HeldEdges,
-) -> tuple[float, FloatArray, sp.csr_array]:
-    """Return energy, residual and Jacobian with unknowns in the order x0 y0 x1 y1 ..."""
-    gx, gy = gradient
+@dataclass(frozen=True, slots=True)
+class _Chord:
+    """Two vertices far apart and the unit vector across the line between them."""
+
+    ends: IntArray
+    across: FloatArray
+    length: float
+
+
+def _chord(x: FloatArray) -> _Chord:
+    first = int(np.linalg.norm(x - x.mean(axis=0), axis=1).argmax())
+    second = int(np.linalg.norm(x - x[first], axis=1).argmax())
+    along = x[second] - x[first]
+    length = float(np.linalg.norm(along))
+    return _Chord(np.array([first, second]), np.array([-along[1], along[0]]) / length, length)
+
+
+@dataclass(frozen=True, slots=True)
+class _Energy:
+    """What is minimised: the sheet's strain energy, held lengths, a fabric's direction."""
+
+    gradient: tuple[sp.csr_array, sp.csr_array]
+    area: FloatArray
+    held: HeldEdges
+    fabric: Fabric | None
+    chord: _Chord
+
+    def at(self, x: FloatArray) -> tuple[float, FloatArray, sp.csc_array]:
+        """Return energy, residual and Jacobian with unknowns in the order x0 y0 x1 y1 ..."""
+        root = np.sqrt(self.area)
+        if self.fabric is None:
+            residual, blocks = _isotropic_rows(x, self.gradient, root)
+        else:
+            residual, blocks = fabric_rows(x, self.gradient, root, self.fabric)
+            turned, row = self._turned(x)
+            residual.append(turned)
+            blocks.append(row)
+        lengths, rows = _held_rows(x, self.held, self.area)
+        r = np.concatenate([*residual, lengths])
+        by_axis = sp.vstack([sp.hstack(pair) for pair in [*blocks, rows]]).tocsc()
+        order = np.arange(2 * len(x)).reshape(2, -1).T.ravel()
+        return 0.5 * float(r @ r), r, by_axis[:, order]
+
+    def _turned(self, x: FloatArray) -> tuple[FloatArray, list[sp.csr_array]]:
+        """By how much the chord has left its direction; the grain would turn with it."""
+        chord, shape = self.chord, (1, len(x))
+        weight = np.sqrt(_HOLD * self.area.sum()) / chord.length
+        signs = weight * np.array([-1.0, 1.0])
+        row = [
+            sp.csr_array((signs * c, (np.zeros(2, dtype=int), chord.ends)), shape=shape)
+            for c in chord.across
+        ]
+        return weight * np.diff(x[chord.ends], axis=0) @ chord.across, row
+
+
+def _isotropic_rows(
+    x: FloatArray, gradient: tuple[sp.csr_array, sp.csr_array], root: FloatArray
+) -> Rows:
     F = _deformation(x, gradient)
-    root = np.sqrt(area)
+    gx, gy = gradient
     fx, fy = F[:, :, 0], F[:, :, 1]
     residual = [
         root * ((fx**2).sum(axis=1) - 1) / 2,
@@ -177,24 +238,23 @@ def _energy(
             for k in (0, 1)
         ],
     ]
+    return residual, blocks
+
+
+def _held_rows(
+    x: FloatArray, held: HeldEdges, area: FloatArray
+) -> tuple[FloatArray, list[sp.csr_array]]:
     span = x[held.vertices[:, 1]] - x[held.vertices[:, 0]]
     root = np.sqrt(_HOLD * area.mean()) / held.length**2
-    residual.append(root * ((span**2).sum(axis=1) - held.length**2) / 2)
     rows = np.repeat(np.arange(len(span)), 2)
     ends = held.vertices.ravel()
     signs = np.tile([-1.0, 1.0], len(span))
-    blocks.append(
-        [
-            sp.csr_array(
-                (signs * np.repeat(root * span[:, k], 2), (rows, ends)), shape=(len(span), len(x))
-            )
-            for k in (0, 1)
-        ]
-    )
-    r = np.concatenate(residual)
-    by_axis = sp.vstack([sp.hstack(pair) for pair in blocks]).tocsc()
-    order = np.arange(2 * len(x)).reshape(2, -1).T.ravel()
-    return 0.5 * float(r @ r), r, by_axis[:, order]
+    return root * ((span**2).sum(axis=1) - held.length**2) / 2, [
+        sp.csr_array(
+            (signs * np.repeat(root * span[:, k], 2), (rows, ends)), shape=(len(span), len(x))
+        )
+        for k in (0, 1)
+    ]
 
 
 def _unfolded(x: FloatArray, gradient: tuple[sp.csr_array, sp.csr_array]) -> FloatArray:

@@ -18,7 +18,7 @@ from seatlook.pbr.studio import Studio, eye_of, studio
 
 FACTOR = 2  # samples per pixel and axis
 # The surround of pictures as well, so that map and picture lie over each other without a glare.
-_PAPER, _INK, _BARE = 97, (242, 242, 242), 205
+PAPER, _INK, _BARE = 97, (242, 242, 242), 205
 _SEQUENTIAL = ("viridis", "cividis", "magma")
 COLORMAPS = ("diverging", *_SEQUENTIAL)
 
@@ -140,7 +140,7 @@ def coloured(
     bare : linear grey of what has no value
     """
     mean = np.empty((ids.shape[0] // FACTOR, ids.shape[1] // FACTOR, 3))
-    paper = (_PAPER / 255) ** 2.2
+    paper = (PAPER / 255) ** 2.2
     colour.coloured(
         value, cosine, ids, *value_range, table, np.full(3, bare), paper, FACTOR, mean
     )  # fmt: skip
@@ -208,7 +208,7 @@ def with_bar(
     font = ImageFont.load_default(size)
     top, bottom = height // 5, height - height // 5
     left = width - 6 * size
-    draw.rectangle((left - size, top - 2 * size, width, bottom + size), fill=(_PAPER,) * 3)
+    draw.rectangle((left - size, top - 2 * size, width, bottom + size), fill=(PAPER,) * 3)
     bar = np.rint(255 * srgb_encode(table)).astype(np.uint8)
     rows = np.linspace(len(bar) - 1, 0, bottom - top).astype(np.int64)
     picture.paste(Pillow.fromarray(np.repeat(bar[rows][:, None], size, axis=1)), (left, top))
