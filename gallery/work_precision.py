@@ -3,8 +3,8 @@
 Run it with: python gallery/work_precision.py
 
 Rows are kept in docs/charts/work_precision.csv as they are finished and not run again; delete a row
-to repeat it. The covers come from gallery/scaling.py. Everything runs on one thread, the compiled
-kernels' cache warm; times include the set-up of the element.
+to repeat it. Covers come from gallery/scaling.py, other programs from gallery/peers.py. All run on
+one thread, the compiled kernels' cache warm; times include the set-up of the element.
 """
 
 from __future__ import annotations
@@ -35,28 +35,39 @@ import fabrics  # noqa: E402
 import meshes  # noqa: E402
 from counter_examples import position_based, sheet_of  # noqa: E402
 from elastica import hanging_tip  # noqa: E402
+from morley import MorleySheet  # noqa: E402
 from seatlook.solver.loads import DeadLoad  # noqa: E402
 from seatlook.solver.newton import Potential  # noqa: E402
 from seatlook.solver.sheet import solve_sheet  # noqa: E402
 from seatlook.solver.statics import equilibrium  # noqa: E402
+from stretched import WAVE, stretched, wave_and_amplitude  # noqa: E402
 
 COLUMNS = ("panel", "series", "parameter", "seed", "cpu_seconds", "error")
 Case = tuple[str, str, float, int, Callable[[], float]]
 SEEDS = (0, 1, 2)
+ELEMENTS = ("edgeslope", "hinge", "patch6", "morley")
 GAMMA, SLENDERNESS, WIDTH = 10.0, 0.02, 0.2
-NAMES = {"lbfgs": "L-BFGS", "newton": "Newton", "explicit": "explicit, masses scaled"}
+NAMES = {
+    "morley": "Morley (slopes unknown)",
+    "morley, newton": "Morley, Newton",
+    "lbfgs": "L-BFGS",
+    "newton": "Newton",
+    "explicit": "explicit, masses scaled",
+}
 TITLES = {
     "threshold": "Threshold: buckling load of a sheet on springs\n(4 to 16 edges per wave, exact)",
     "tension": "The same, pulled across the wave by 2 kN/m\n(6 to 16 edges per wave, exact)",
     "equilibrium": "Equilibrium: tip of a hanging strip, Γ = 10, t/L = 0.02\n"
     "(5 to 40 edges, elastica)",
+    "stretched": "Wrinkles of a stretched clamped sheet: wave length\n"
+    "(uns, h 5, 3.5, 2.5 mm; 1: no train of waves; fine aligned grid)",
     "cover": "Cover of the demo seat, sewn, hooked and at rest\n(20 to 7 mm; mean W2 against 5 mm)",
 }
 
 
 def cases() -> Iterator[Case]:
     """Yield panel, series, parameter, seed and what returns the error."""
-    for element, edges, seed in product(("edgeslope", "hinge", "patch6"), (4, 6, 8, 12, 16), SEEDS):
+    for element, edges, seed in product(ELEMENTS, (4, 6, 8, 12, 16), SEEDS):
         call = partial(threshold, element, "uns", edges, seed=seed)
         yield "threshold", element, edges, seed, call
         if edges >= 6:
@@ -64,12 +75,21 @@ def cases() -> Iterator[Case]:
     for method in ("newton", "lbfgs", "explicit"):
         for edges in (5, 10, 20, 40) if method != "explicit" else (5, 10, 20):
             yield "equilibrium", method, edges, 0, partial(strip_error, method, edges)
-    for element in ("hinge", "patch6"):
+    for element in ELEMENTS[1:]:
         for edges in (5, 10, 20):
             call = partial(counter_strip_error, element, edges)
             yield "equilibrium", f"{element}, newton", edges, 0, call
     for sweeps in (100, 1000, 10_000):
         yield "equilibrium", "XPBD, 10 edges", sweeps, 0, partial(position_error, sweeps)
+    yield from wrinkles()
+
+
+def wrinkles() -> Iterator[Case]:
+    """The same of the stretched sheet; Morley's plate would want a right start of its slopes."""
+    for element in ELEMENTS[:3]:
+        for h in (5.0, 3.5, 2.5) if element == "edgeslope" else (5.0, 3.5):
+            for seed in SEEDS if element == "edgeslope" else SEEDS[:1]:
+                yield "stretched", element, h, seed, partial(wave_error, element, h, seed)
 
 
 def strip(edges: int, kind: str) -> tuple[np.ndarray, np.ndarray, object]:
@@ -102,17 +122,28 @@ def strip_error(method: str, edges: int) -> float:
 
 
 def counter_strip_error(element: str, edges: int) -> float:
-    """Linear triangles on a regular mesh, mirrored about the clamp, which so adds no error."""
+    """Other elements on a regular mesh, mirrored about the clamp, which so adds no error."""
     X, T = meshes.rectangle("right", 2.0, WIDTH, 1.0 / edges)
     X = X - [1.0, 0.0]
     fabric = strip(edges, "right")[2]
-    sheet = sheet_of(element, X, T, fabric)
-    held = np.repeat((np.abs(X[:, 0]) < 1e-9)[:, None], 3, axis=1)
-    weight = DeadLoad(np.outer(sheet.mass, (0, 0, -GAMMA)))
     x = np.pad(X, ((0, 0), (0, 1)))
+    if element == "morley":
+        sheet = MorleySheet(X, T, fabric)
+        x = sheet.flat(x)
+    else:
+        sheet = sheet_of(element, X, T, fabric)
+    held = np.zeros(x.shape, dtype=bool)
+    held[: len(X)] = np.abs(X[:, :1]) < 1e-9
+    weight = DeadLoad(np.outer(sheet.mass, (0, 0, -GAMMA)))
     potential = Potential(sheet.energies, [weight], ~held)
     found = equilibrium(sheet, potential, x, "newton", tolerance=5e-4, max_iterations=None)
-    return tip_error(X, found.x) if found.residual <= 5e-4 else float("nan")
+    return tip_error(X, found.x[: len(X)]) if found.residual <= 5e-4 else float("nan")
+
+
+def wave_error(element: str, h_mm: float, seed: int) -> float:
+    """Wave length of a stretched sheet over the reference's, minus 1; 1 where there is no train."""
+    wave, _ = wave_and_amplitude(*stretched("uns", 1e-3 * h_mm, seed=seed, element=element))
+    return wave / WAVE - 1.0 if np.isfinite(wave) else 1.0
 
 
 def position_error(sweeps: int) -> float:
@@ -162,7 +193,7 @@ def covers() -> list[dict[str, str]]:
         return []
     finest = min(rows, key=lambda row: float(row["element_size_mm"]))
     return [
-        {"panel": "cover", "series": "L-BFGS", "parameter": row["element_size_mm"],
+        {"panel": "cover", "series": "lbfgs", "parameter": row["element_size_mm"],
          "seed": row["seed"], "cpu_seconds": row["cpu_seconds"],
          "error": f"{float(row['w2_mean']) / float(finest['w2_mean']) - 1.0:.4g}"}
         for row in rows if row["element_size_mm"] != finest["element_size_mm"]
@@ -170,33 +201,49 @@ def covers() -> list[dict[str, str]]:
 
 
 def draw(path: Path) -> None:
-    """Draw the four diagrams; bars span the seeds."""
-    figure, axes = plt.subplots(2, 2, figsize=(11, 8.5), layout="constrained")
-    rows = [*read(TABLE), *covers()]
-    for axis, (panel, title) in zip(axes.flat, TITLES.items(), strict=True):
-        groups: dict[str, dict[str, list[tuple[float, float]]]] = defaultdict(
-            lambda: defaultdict(list)
-        )
-        for row in rows:
-            if row["panel"] == panel:
-                pair = float(row["cpu_seconds"]), abs(float(row["error"]))
-                groups[row["series"]][row["parameter"]].append(pair)
-        for series, points in groups.items():
-            values = [np.array(pairs) for pairs in points.values()]
-            t = [v[:, 0].mean() for v in values]
-            middle = np.array([v[:, 1].mean() for v in values])
-            spread = np.abs([[m - v[:, 1].min(), v[:, 1].max() - m]
-                             for m, v in zip(middle, values, strict=True)]).T  # fmt: skip
-            dashed = "--" if series.startswith(("hinge", "patch6", "XPBD")) else "-"
-            axis.errorbar(t, middle, yerr=spread, marker="o", ls=dashed, capsize=3,
-                          label=NAMES.get(series, series))  # fmt: skip
+    """Draw the diagrams; bars span the seeds."""
+    figure, axes = plt.subplots(2, 3, figsize=(16, 8.5), layout="constrained")
+    axes.flat[-1].set_axis_off()
+    rows = [*read(TABLE), *read(CHARTS / "peers.csv"), *covers()]
+    series = list(dict.fromkeys(row["series"] for row in rows))
+    looks = {name: look(name, number) for number, name in enumerate(series)}
+    for axis, (panel, title) in zip(axes.flat, TITLES.items(), strict=False):
+        for name in series:
+            mine = [row for row in rows if (row["panel"], row["series"]) == (panel, name)]
+            if mine:
+                t, error, spread = averages(mine)
+                axis.errorbar(t, error, yerr=spread, **looks[name])
         axis.set(xscale="log", yscale="log", title=title, xlabel="CPU s, 1 thread",
                  ylabel="relative error")  # fmt: skip
+        low, high = np.log10(axis.get_xlim())
+        axis.set_xlim(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
         axis.grid(alpha=0.3, which="both")
-        if groups:
+        if panel != "equilibrium":
             axis.legend(fontsize=8)
-    figure.suptitle("Error against work; dashed: counter-examples that are no part of seatlook")
+    lines = axes.flat[list(TITLES).index("equilibrium")].get_legend_handles_labels()
+    axes.flat[-1].legend(*lines, loc="upper left", title="Equilibrium")
+    figure.suptitle("Error against work; dashed: counter-examples; dotted: other programs")
     figure.savefig(path)
+
+
+def averages(rows: list[dict[str, str]]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mean time and error of every size, and how far the seeds lie below and above."""
+    sizes: dict[str, list[tuple[float, float]]] = defaultdict(list)
+    for row in rows:
+        sizes[row["parameter"]].append((float(row["cpu_seconds"]), abs(float(row["error"]))))
+    values = [np.array(pairs) for pairs in sizes.values()]
+    t, error = np.array([v.mean(axis=0) for v in values]).T
+    low, high = (np.array([f(v[:, 1]) for v in values]) for f in (np.min, np.max))
+    return t, error, np.maximum([error - low, high - error], 0.0)
+
+
+def look(name: str, number: int) -> dict[str, object]:
+    """Colour, line and label of a series."""
+    line = "--" if name.startswith(("hinge", "patch6", "XPBD")) else "-"
+    line = ":" if name.startswith(("CalculiX", "MuJoCo")) else line
+    marker = "s" if line == ":" else "o"
+    return {"ls": line, "marker": marker, "capsize": 3, "color": plt.get_cmap("tab20")(number),
+            "label": NAMES.get(name, name)}  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -46,7 +46,7 @@ def stretched(kind, h, *, seed=0, chords=False, thickness=1e-4, stretch=0.1, ele
 def wave_and_amplitude(X, x, thickness=1e-4):
     """Wave length by zero crossings among the tall wrinkles at mid-length, half their range / t.
 
-    Of a flat sheet nan and 0.
+    No wave length (nan) of a sheet that is flat, or bulges without a train of waves.
     """
     middle = X[:, 0] > LENGTH / 2 - 1e-9
     order = np.argsort(X[middle, 1])
@@ -61,4 +61,6 @@ def wave_and_amplitude(X, x, thickness=1e-4):
     zero = np.flatnonzero(z[:-1] * z[1:] < 0)
     crossing = y[zero] - z[zero] * (y[zero + 1] - y[zero]) / (z[zero + 1] - z[zero])
     crossing = crossing[(crossing > y[tall[0]]) & (crossing < y[tall[-1]])]
+    if len(crossing) < 2:
+        return np.nan, np.abs(peaks).max() / thickness
     return 2 * np.diff(crossing).mean(), np.abs(np.diff(peaks)).max() / 2 / thickness
