@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import platform
 import sys
-from importlib.metadata import version
 from pathlib import Path
 
 from cyclopts import App
@@ -58,6 +57,8 @@ def doctor(*, json: Json = False) -> int:
 
     Example: seatlook doctor
     """
+    from importlib.metadata import version
+
     advice: list[str] = []
     packages = ("numpy", "scipy", "numba", "vtk", "trimesh", "ezdxf", "shapely")
     drawn, code = _drawing(advice)
