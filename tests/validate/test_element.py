@@ -69,6 +69,28 @@ def test_elastica_at_gamma_1000(kind, report):
 
 
 @pytest.mark.parametrize("kind", FAIR)
+def test_cantilever_with_a_load_at_its_end(kind, report):
+    """Published shell benchmark (Sze, Liu and Lo 2004): P L^2 / E I = 4, no Poisson's ratio."""
+    length, width, thickness, young, load = 10.0, 1.0, 0.1, 1.2e6, 4.0
+    X, T = meshes.rectangle(kind, length, width, length / 20)
+    fabric = fabrics.isotropic(
+        young * thickness, young * thickness**3 / 12, 0.0, thickness=thickness
+    )
+    end = np.flatnonzero(X[:, 0] > length - 1e-9)
+    end = end[np.argsort(X[end, 1])]
+    half = 0.5 * np.diff(X[end, 1]) / width
+    loads = np.zeros((len(X), 3))
+    loads[end[:-1], 2] += load * half
+    loads[end[1:], 2] += load * half
+    solved = solve_sheet(X, T, fabric, clamped=X[:, 0] < 1e-9, loads=loads, tolerance=1e-6,
+                         strict=True)  # fmt: skip
+    tip = solved.positions[end].mean(axis=0)
+    report(f"{kind}: deflection {tip[2]:.4f} of 6.698, shortening {length - tip[0]:.4f} of 3.286")
+    assert tip[2] == pytest.approx(6.698, rel=3e-3)
+    assert length - tip[0] == pytest.approx(3.286, rel=3e-3)
+
+
+@pytest.mark.parametrize("kind", FAIR)
 @pytest.mark.parametrize(("edges", "bar"), [(8, 0.025), (12, 0.015), (16, 0.01)])
 def test_winkler_load(kind, edges, bar, report):
     error = winkler_load(kind, edges)
