@@ -2,7 +2,7 @@
 #   make demo       sew, hook, cover, judge and draw the demo seat; leaves out/demo/index.html
 #   make test       the tests that take under 20 s each
 #   make validate   the long ones: convergence, fuzzing, path tracing
-#   make browser    the gallery page in headless Chromium
+#   make browser    the gallery page and the GLB in headless Chromium
 #   make check      style, types, import contract, spelling
 #   make bench      timings
 #   make docs       the reference, from the docstrings, in out/reference

@@ -155,6 +155,8 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
     alpha = max(a.roughness**2, MIN_ALPHA)
     if a.anisotropy != 0:
         raise ValueError("anisotropy is not written")
+    if a.maps is not None:
+        raise ValueError("measured maps are not written")
     curves = _curves(a)
     f0 = (1 - a.metalness) * np.full(3, a.f0) + a.metalness * a.albedo
     f90 = (1 - a.metalness) * brdf.F90(np.full(3, a.f0)) + a.metalness * brdf.F90(a.albedo)
