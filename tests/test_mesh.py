@@ -55,6 +55,15 @@ def test_boundary_loops_of_a_ring_and_of_a_closed_surface():
     assert mesh.boundary_loops(tetrahedron) == []
 
 
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.permutations(range(7)).map(lambda p: p[:3]), max_size=12))
+def test_boundary_sides_are_those_that_occur_once(triangles):
+    faces = np.array(triangles, dtype=np.int64).reshape(-1, 3)
+    sides = [frozenset((f[k], f[(k + 1) % 3])) for f in faces.tolist() for k in range(3)]
+    alone = [k for k, side in enumerate(sides) if sides.count(side) == 1]
+    assert mesh.boundary_sides(faces).tolist() == alone
+
+
 def test_boundary_loops_refuse_a_pinched_surface():
     with pytest.raises(InputError, match=r"touch in a vertex.*expected a manifold surface"):
         mesh.boundary_loops(np.array([[0, 1, 2], [0, 3, 4]]))

@@ -51,6 +51,13 @@ def test_y_up_is_turned_to_z(tmp_path):
     assert np.allclose(np.sort(foam.vertices, axis=0), np.sort(vertices, axis=0))
 
 
+def test_a_closed_surface_with_nothing_inside(tmp_path, problems):
+    folded = np.array([[0, 0, 0], [0.3, 0, 0], [0, 0.3, 0]], dtype=float)
+    write_obj(folded, np.array([[0, 1, 2], [0, 2, 1]]), tmp_path / "foam.obj")
+    (message,) = problems(read_foam, tmp_path / "foam.obj", material=FOAM, unit="mm")
+    assert message == "foam.obj: surface: got nothing inside, expected a body with a volume"
+
+
 def test_surface_not_closed(tmp_path, problems):
     mesh = tube()
     write_obj(mesh.vertices, mesh.faces[1:], tmp_path / "foam.obj")

@@ -6,50 +6,46 @@ import numpy as np
 import pytest
 
 from seatlook import io
-from seatlook.assembly import assemble
-from seatlook.cli._demo import write_demo
 from seatlook.model import Appearance, Rig, named_view, sun
 from seatlook.sensory.cross_check import log_ratio
+from seatlook.sensory.observer import OBSERVER
 from seatlook.sensory.vwi import score
-from seatlook.solver import solve
 from seatlook.study.amplitude import amplitude_ladder, reference_rig
 from seatlook.study.light_search import sun_rig
 from seatlook.study.view import View, luminance
 
 pytestmark = [pytest.mark.validate, pytest.mark.render]
 LAMBERT = Appearance(albedo=np.full(3, 0.2), f0=0.0, roughness=1.0)
+LOOKS = ("black", "bright", "suede", "smooth black", "smooth bright", "bright rough")
+
+
+def missed(look, found):
+    """Mark a look that misses the bar, with what was found."""
+    return pytest.param(look, marks=pytest.mark.xfail(strict=True, reason=found), id=look)
 
 
 @pytest.fixture(scope="module")
-def solution(tmp_path_factory):
-    """Solve the demo in plain leather, one sewing line 4 % longer than its partner."""
-    folder = tmp_path_factory.mktemp("eased")
-    write_demo(
-        folder,
-        ease={"INSERT-BOLSTER_L": 0.04},
-        starve={},
-        tension=0.005,
-        material="black-leather",
-        insert="black-leather",
-        element_size_mm=7.0,
-        seed=0,
-    )
-    return solve(assemble(io.load_scene(folder / "scene.toml")))
-
-
-@pytest.fixture(scope="module")
-def view(solution):
+def view(spoiled):
+    solution = spoiled[1]
     target = solution.positions.mean(axis=0)
     return View(solution, named_view("front_34", target=target, size=(1280, 720)))
 
 
 @pytest.fixture(scope="module")
 def looks():
+    """The supplied textures, and both leathers as the drawn patch has them, without grain."""
     black, bright, suede = (
         io.read_material(name).appearance for name in ("black-leather", "bright-leather", "suede")
     )
-    rough = replace(bright, roughness=0.85, texture="none", coat=0.0)
-    return {"black": black, "bright": bright, "bright rough": rough, "suede": suede}
+    smooth = replace(bright, texture="none")
+    return {
+        "black": black,
+        "bright": bright,
+        "suede": suede,
+        "smooth black": replace(black, texture="none"),
+        "smooth bright": smooth,
+        "bright rough": replace(smooth, roughness=0.85, coat=0.0),
+    }
 
 
 @pytest.fixture(scope="module")
@@ -58,26 +54,34 @@ def highlight(view):
     return reference_rig(view.camera)
 
 
+@pytest.fixture(scope="module")
+def lit(view, looks, highlight):
+    """Pictures of test and reference in the highlight, per look."""
+    return {name: pair(view, appearance, highlight) for name, appearance in looks.items()}
+
+
 def pair(view, appearance, rig):
     return tuple(luminance(picture) for picture in view._draw(appearance, rig))
 
 
-def vwi(view, test, reference, mask=None, share=1.0):
+def vwi(view, test, reference, mask=None, *, share=1.0, observer=OBSERVER):
     mask = view.region.mask if mask is None else mask
     ppd = share * view.camera.pixels_per_degree
-    return score(test, reference, pixels_per_degree=ppd, mask=mask).vwi
+    return score(test, reference, pixels_per_degree=ppd, mask=mask, observer=observer).vwi
 
 
-def test_equal_pictures_score_exactly_zero(view, looks, highlight):
-    test, _ = pair(view, looks["suede"], highlight)
+def test_equal_pictures_score_exactly_zero(view, lit):
+    test, _ = lit["suede"]
     assert vwi(view, test, test) == 0
 
 
-def test_a_highlight_shows_dark_and_glossy_first(view, looks, highlight, record_property):
-    found = {name: view.vwi(appearance, highlight) for name, appearance in looks.items()}
+def test_a_highlight_shows_dark_and_glossy_first(view, lit, record_property):
+    found = {name: vwi(view, *pictures) for name, pictures in lit.items()}
     record_property("vwi", found)
-    assert found["black"] > 1.1 * found["bright"] > 1.21 * found["bright rough"]
+    assert found["smooth black"] > 1.1 * found["smooth bright"] > 1.21 * found["bright rough"]
     assert found["bright rough"] > 1.1 * found["suede"]
+    # Grain hides more of the wrinkles where it glitters more.
+    assert found["black"] > found["bright"] > 1.1 * found["bright rough"]
 
 
 def test_raking_light_is_reported(view, looks, record_property):
@@ -88,13 +92,14 @@ def test_raking_light_is_reported(view, looks, record_property):
     assert np.isfinite(ratio)
 
 
-def test_a_texture_in_both_pictures_hides(view, looks, highlight):
-    plain = replace(looks["suede"], texture="none")
-    assert view.vwi(looks["suede"], highlight) < 0.9 * view.vwi(plain, highlight)
+def test_a_texture_in_both_pictures_hides(view, lit, looks, highlight):
+    plain = pair(view, replace(looks["suede"], texture="none"), highlight)
+    assert vwi(view, *lit["suede"]) < 0.9 * vwi(view, *plain)
+    assert vwi(view, *lit["black"]) < 0.9 * vwi(view, *lit["smooth black"])
 
 
-def test_albedo_cancels_without_interreflection(solution, view):
-    draft = View(solution, view.camera, quality="draft")
+def test_albedo_cancels_without_interreflection(view):
+    draft = View(view.solution, view.camera, quality="draft")
     # Sky light has no shade in a draft, so only the sun is left to divide by the albedo.
     rig = Rig(name="sun", lights=(sun(elevation_deg=40, azimuth_deg=215),), ambient=100.0)
     mask = draft.region.mask
@@ -105,31 +110,61 @@ def test_albedo_cancels_without_interreflection(solution, view):
     np.testing.assert_allclose(ratios, ratios[1], rtol=0.01)
 
 
-def test_daylight_does_not_matter_and_dusk_lowers(view, looks, highlight, record_property):
-    """Less than on narrow creases, which lose 30 %: these waves are wide and stay seen."""
-    for name, appearance in looks.items():
-        test, reference = pair(view, appearance, highlight)
-        assert np.median(reference[view.region.mask]) > 200
-        day = vwi(view, test, reference)
-        assert vwi(view, 10 * test, 10 * reference) == pytest.approx(day, rel=0.05)
-        dusk = vwi(view, 1e-3 * test, 1e-3 * reference) / day
-        record_property(f"dusk_over_day_{name}", dusk)
-        assert dusk < 0.9
+@pytest.mark.parametrize("look", LOOKS)
+def test_daylight_does_not_matter(view, lit, look):
+    test, reference = lit[look]
+    assert np.median(reference[view.region.mask]) > 200
+    day = vwi(view, test, reference)
+    assert vwi(view, 10 * test, 10 * reference) == pytest.approx(day, rel=0.05)
 
 
-def test_half_the_pixels_at_half_the_pixels_per_degree(view, looks, highlight, record_property):
+@pytest.mark.parametrize(
+    "look",
+    [
+        missed("black", "12 % less: grain and highlight hide as much by dusk as by day"),
+        missed("bright", "16 % less"),
+        missed("suede", "26 % less"),
+        missed("smooth black", "28 % less"),
+        missed("smooth bright", "22 % less"),
+        "bright rough",
+    ],
+)
+def test_dusk_lowers(view, lit, look, record_property):
+    test, reference = lit[look]
+    share = vwi(view, 1e-3 * test, 1e-3 * reference) / vwi(view, test, reference)
+    record_property("dusk_over_day", share)
+    assert share < 0.7
+
+
+@pytest.mark.parametrize("look", LOOKS)
+def test_dusk_lowers_what_nothing_hides(view, lit, look, record_property):
+    """What both pictures share loses its contrast with the wrinkle: without it all looks fall."""
+    test, reference = lit[look]
+    bare = replace(OBSERVER, masking_gain=0.0)
+    day, dusk = (vwi(view, power * test, power * reference, observer=bare) for power in (1.0, 1e-3))
+    record_property("unmasked_dusk_over_day", dusk / day)
+    assert dusk < 0.7 * day
+
+
+@pytest.mark.parametrize(
+    "look",
+    [
+        *(look for look in LOOKS if look != "smooth black"),
+        missed("smooth black", "3.9 % less: its highlights end within a pixel"),
+    ],
+)
+def test_half_the_pixels_at_half_the_pixels_per_degree(view, lit, look, record_property):
     def halved(picture):
         h, w = picture.shape
         return picture.reshape(h // 2, 2, w // 2, 2).mean(axis=(1, 3))
 
     mask = halved(view.region.mask.astype(float)) == 1.0
     whole = np.repeat(np.repeat(mask, 2, axis=0), 2, axis=1)
-    for name, appearance in looks.items():
-        test, reference = pair(view, appearance, highlight)
-        half = vwi(view, halved(test), halved(reference), mask, 0.5)
-        share = half / vwi(view, test, reference, whole)
-        record_property(f"half_over_full_{name}", share)
-        assert share == pytest.approx(1, abs=0.05)
+    test, reference = lit[look]
+    half = vwi(view, halved(test), halved(reference), mask, share=0.5)
+    share = half / vwi(view, test, reference, whole)
+    record_property("half_over_full", share)
+    assert share == pytest.approx(1, abs=0.03)
 
 
 def test_a_texture_shifted_by_one_pixel_is_caught(view, looks, highlight):

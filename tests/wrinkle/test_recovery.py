@@ -137,6 +137,19 @@ def test_low_pass_has_the_transfer_it_says(wavelength, kept):
     assert (z @ before) / (before @ before) == pytest.approx(kept, abs=0.02)
 
 
+def test_a_part_of_the_low_pass_is_that_of_the_whole():
+    """At one and a half wavelengths from what is held the difference is 1 in 700 of a wave."""
+    solution = shaped(wave(0.0005, 0.02), h=0.0025, size=0.24, kind="right")
+    cover = solution.cover
+    near = np.linalg.norm(cover.rest - 0.12, axis=1)
+    whole = wrinkle.low_passed(cover, solution.positions)
+    part = wrinkle.low_passed(cover, solution.positions, within=near < 0.0675)
+    off = np.abs(part - whole).max(axis=1)
+    assert off[near < 1e-3].max() < 0.0005 / 700
+    assert off[near > 0.0675].max() > 2e-4
+    assert (part[near > 0.0675] == solution.positions[near > 0.0675]).all()
+
+
 def test_hooked_lines_and_outlines_are_held():
     plain = shaped(wave(0.0005, 0.015), h=0.0025)
     line = np.flatnonzero(np.abs(plain.cover.rest[:, 0] - 0.06) < 0.001)

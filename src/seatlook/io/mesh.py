@@ -15,10 +15,12 @@ from seatlook.io._schema import shown
 from seatlook.io._toml import read_file
 from seatlook.io.curves import read_curves
 from seatlook.io.surface import METRES, Unit, check_size
+from seatlook.mesh import face_vectors
 from seatlook.model import FloatArray, Foam, FoamMaterial, IntArray
 
 Up = Literal["z", "y"]
 
+_NOTHING = 1e-9  # volume over the cube of the extent; a sheet folded flat has rounding only
 MERGE_M = 1e-7  # STL repeats each corner in every face, rounded to 4 bytes
 
 
@@ -43,8 +45,8 @@ def read_foam(
     ------
     InputError
         When the file is no mesh, holds nan, is not closed, is of several bodies, its faces do not
-        agree on a side, or its largest extent is not within 0.05 to 3 m. A closed surface whose
-        faces all look inward is turned.
+        agree on a side, nothing is inside, or its largest extent is not within 0.05 to 3 m. A
+        closed surface whose faces all look inward is turned.
     """
     vertices, faces = _load(path)
     vertices = METRES[unit] * vertices
@@ -54,7 +56,7 @@ def read_foam(
     vertices, faces = _merged(vertices, faces)
     mesh = trimesh.Trimesh(vertices=vertices, faces=faces, process=False)
     _check_closed(path, mesh)
-    if mesh.volume < 0:
+    if _volume(path, vertices, faces) < 0:
         faces = faces[:, ::-1]
     return Foam(
         vertices=vertices,
@@ -139,3 +141,14 @@ def _check_closed(path: Path, mesh: Any) -> None:
     if mesh.body_count != 1:
         got = f"{mesh.body_count} bodies"
         raise InputError.single("surface", got=got, expected="one body", file=path)
+
+
+def _volume(path: Path, vertices: FloatArray, faces: IntArray) -> float:
+    """Volume [m3] inside, negative where the faces look inward; InputError where there is none."""
+    middle = vertices[faces].mean(axis=1)
+    volume = float((face_vectors(vertices, faces) * middle).sum()) / 3.0
+    if not abs(volume) > _NOTHING * float(np.ptp(vertices, axis=0).max()) ** 3:
+        raise InputError.single(
+            "surface", got="nothing inside", expected="a body with a volume", file=path
+        )
+    return volume

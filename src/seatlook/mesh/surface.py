@@ -30,10 +30,9 @@ def boundary_sides(faces: IntArray) -> IntArray:
     """
     half = _half_edges(faces)
     key = half.min(axis=1) * (int(faces.max(initial=-1)) + 1) + half.max(axis=1)
-    # A plain sort and a search among the few that are left: a third of the time of np.unique.
-    ordered = np.sort(key)
-    other = ordered[1:] != ordered[:-1]
-    alone = ordered[np.append(True, other) & np.append(other, True)]
+    values, count = np.unique(key, return_counts=True)
+    alone = values[count == 1]
+    # Searching among the few takes a third of the time of an inverse of all.
     place = np.minimum(np.searchsorted(alone, key), max(len(alone) - 1, 0))
     return np.flatnonzero(alone[place] == key) if len(alone) else np.zeros(0, dtype=np.int64)
 
