@@ -125,6 +125,31 @@ def test_wires_are_hooked_to_the_seams_above_them(own, demo_scene, capsys):
         assert hook.line in (f"BOLSTER_{side} 3 - INSERT", f"BOLSTER_{side} 4 - INSERT")
 
 
+def test_a_foam_in_other_axes_is_told_by_its_size(own, tmp_path, capsys):
+    body = io.read_foam(own / "foam.obj", material=io.read_foam_material("foam-seat"), unit="mm")
+    x, y, z = body.vertices.T
+    io.write_obj(np.column_stack([x, z, -y]), body.faces, tmp_path / "turned.obj")
+    words = ["init", str(own / "cover.dxf"), str(tmp_path / "turned.obj"), "--out"]
+    run([*words, str(tmp_path / "a")])
+    assert "if its file's vertical axis is y, say --up y" in capsys.readouterr().err
+    run([*words, str(tmp_path / "b"), "--up", "y"])
+    said = capsys.readouterr().err
+    assert "say --up" not in said
+    width, depth, height = np.ptp(body.vertices, axis=0) * 1e3
+    assert f"foam: {width:.0f} mm wide, {depth:.0f} mm deep, {height:.0f} mm high" in said
+
+
+def test_check_says_how_to_go_on_and_puts_the_largest_ease_first(started, capsys):
+    assert run(["check", str(started / "scene.toml"), "--element-size-mm", "20"]) == 0
+    said = capsys.readouterr()
+    assert "nothing wrong; to solve and draw it: seatlook evaluate" in said.err
+    lines = said.out.splitlines()
+    rows = lines[next(k for k, line in enumerate(lines) if line.startswith("seam ")) + 1 :]
+    shares = [abs(float(row.split()[-5])) for row in rows]
+    assert shares == sorted(shares, reverse=True)
+    assert shares[0] > 0.5
+
+
 def test_edits_are_not_written_over(started, own, capsys):
     words = ["init", str(own / "cover.dxf"), str(own / "foam.obj"), "--out", str(started)]
     before = (started / "scene.toml").read_bytes()

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import builtins
+import re
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
@@ -15,6 +17,7 @@ from seatlook.errors import InputError
 from seatlook.report import comparison as module
 from seatlook.report.comparison import Comparison, variant_names
 from seatlook.report.comparison_page import write_comparison
+from seatlook.report.comparison_score import VariantScores
 from seatlook.solver import solve
 
 pytestmark = pytest.mark.render
@@ -97,6 +100,55 @@ def test_the_page_says_first_what_differs(comparison, tmp_path):
     assert "texture suede: " not in differences
     assert len(list(tmp_path.glob("variants/*/*/*.png"))) == 8
     assert len(list(tmp_path.glob("maps/*/*.png"))) == 8
+
+
+def test_the_page_has_wrinkles_parameters_and_answers_of_each_variant(comparison, tmp_path):
+    page = write_comparison(comparison, tmp_path).read_text()
+    assert "W2 is above 1 on: pvc " in page
+    assert "They differ most in " in page
+    assert 'id="wrinkles"' in page
+    assert "Distortion of the texture" not in page
+    for name in ("pvc", "suede cover"):
+        assert f">{name}, scene</summary>" in page
+    assert page.count("Copy as TOML") >= 2 * 3
+    rows = [page.index(f'<th scope="row">{row}') for row in (
+        "pvc: pvc", "suede cover: pvc", "pvc: suede", "suede cover: suede",
+    )]  # fmt: skip
+    assert rows == sorted(rows)
+    chosen = re.findall(r'<option value="\w+" selected>([^<]*)</option>', page)
+    assert chosen == ["pvc: pvc, sun", "suede cover: pvc, sun"]
+
+
+def test_scores_are_marked_and_the_widest_difference_opens_the_page(comparison, tmp_path):
+    vwi = {
+        (variant, texture, rig): 1.0 + 2.0 * (variant == "suede cover" and rig == "bulb") * n
+        for variant in comparison.variants
+        for n, texture in enumerate(comparison.textures, 1)
+        for rig in comparison.rigs
+    }
+    scores = VariantScores(
+        variants=tuple(comparison.variants),
+        vwi=MappingProxyType(vwi),
+        refused=MappingProxyType({"other": "too smooth"}),
+    )
+    assert scores.widest == ("suede cover", "suede", "bulb")
+    assert scores.table().rows[0] == ("suede", "bulb", 1.0, 5.0, 4.0)
+    page = write_comparison(comparison, tmp_path, scores=scores).read_text()
+    assert page.index("Visibility of wrinkles (VWI") < page.index('id="appearance"')
+    assert "Visibility differs most for suede under bulb: VWI 5 in suede cover, 1 in pvc." in page
+    assert "VWI 5: most visible of all" in page
+    assert "other has no score: too smooth" in page
+    assert 'id="visibility"' not in page
+    chosen = re.findall(r'<option value="\w+" selected>([^<]*)</option>', page)
+    assert chosen == ["pvc: suede, bulb", "suede cover: suede, bulb"]
+
+
+def test_a_variant_that_cannot_be_scored_says_why(comparison):
+    # A picture of 96 pixels is far too coarse for the gate.
+    scores = comparison.visibility()
+    assert set(scores.refused) | {name for name, _, _ in scores.vwi} == set(comparison.variants)
+    assert all("expected" in reason for reason in scores.refused.values())
+    assert "texture" in scores._repr_html_()
 
 
 def test_a_kept_result_is_taken_and_a_stale_one_is_not(folder, comparison, monkeypatch):

@@ -42,8 +42,8 @@ def test_each_cell_leaves_its_three_files(whole):
 def test_memory_is_flat(whole):
     _, _, held = whole
     print("MB held after each cell:", " ".join(f"{mb:.0f}" for mb in held))
-    # The first cells load libraries and kernels.
-    assert max(held[6:]) < held[5] + 20
+    # The first cells load libraries and kernels; a worker ends after 32 anyway.
+    assert max(held[6:]) < 1.05 * held[5]
 
 
 def test_two_workers_leave_the_same_bytes(whole, tmp_path):

@@ -1,0 +1,57 @@
+"""The sentences on top of a page: hand-made zones, cells and checks."""
+
+from __future__ import annotations
+
+import pytest
+
+from seatlook.report import Check
+from seatlook.report.in_short import above_one, missed, seen, wrinkled
+from seatlook.wrinkle import ZoneRow
+
+
+def zone(name: str, *, share: float, stretch: float = 0.5, area: float = 0.01) -> ZoneRow:
+    return ZoneRow(
+        zone=name, area=area, w2_mean=0.1, w2_p95=0.2 + share, w2_area_share=share,
+        w_stretch_mean=0.1, w_compression_mean=0.1, stretch_share=stretch, element_size=0.007,
+        w2_error=0.01,
+    )  # fmt: skip
+
+
+def test_a_smooth_cover_names_its_highest_zone():
+    zones = [zone("insert", share=0.0), zone("free edge", share=0.9)]
+    (said,) = wrinkled(zones)
+    assert said.startswith("Nowhere is W2 above 1")
+    assert said.endswith("Highest is insert with 0.200 (95 %).")
+    assert above_one(zones) == 0
+    assert list(wrinkled([])) == []
+
+
+@pytest.mark.parametrize(
+    ("stretch", "cause"),
+    [
+        (0.9, "by stretch one way"),
+        (0.1, "by excess fabric"),
+        (0.5, "by stretch and excess fabric alike"),
+    ],
+)
+def test_a_wrinkled_cover_says_where_and_why(stretch, cause):
+    zones = [zone("insert", share=0.0, area=0.03), zone("seam", share=0.2, stretch=stretch)]
+    (said,) = wrinkled(zones)
+    assert said == f"W2 is above 1 on 5 % of the cover, most in seam: 20 % of it, {cause}."
+
+
+def test_the_most_and_least_visible_are_named():
+    cells = {("black", "sun"): 1.0, ("black", "bulb"): 4.0, ("suede", "sun"): 2.0}
+    assert list(seen(cells)) == [
+        "Most visible: black under bulb, VWI 4.",
+        "Least visible: suede, VWI 2 under its worst light.",
+    ]
+    assert list(seen({("black", "sun"): 1.0})) == ["Most visible: black under sun, VWI 1."]
+    assert list(seen({})) == []
+
+
+def test_missed_limits_are_said():
+    kept = Check(name="insert: vwi", value="1", limit="2", kept=True)
+    bad = Check(name="class A: w2_area_share", value="0.2", limit="0.1", kept=False)
+    assert list(missed([kept])) == []
+    assert list(missed([kept, bad])) == ["Missed: class A: w2_area_share is 0.2, the limit is 0.1."]
