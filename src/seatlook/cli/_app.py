@@ -24,6 +24,17 @@ Any command takes --quiet: no progress and no notes, only data and what went wro
 heeded. Exit codes: 0 good, 1 a limit is missed, 2 wrong input, 3 solver or renderer failed.
 """
 
+_KEPT = "the same command with --resume takes the result, if it was solved already"
+_AGAIN = "the same command again goes on where it was: what is done is kept"
+# verb -> how an interrupted run goes on
+_GO_ON = {
+    "demo": (_KEPT,),
+    "evaluate": (_KEPT,),
+    "solve": ("with --stages a run keeps its stages, and --resume goes on after the last one",),
+    "compare": (_AGAIN,),
+    "sweep": (_AGAIN,),
+}
+
 app = App(
     name="seatlook",
     help=_HELP,
@@ -47,13 +58,16 @@ def run(tokens: Sequence[str] | None = None) -> int:
     try:
         code = app(words, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        say(f"seatlook: {error}", "see: seatlook --help")
+        see = " ".join(("seatlook", *(error.command_chain or ()), "--help"))
+        say(f"seatlook: {error}", f"see: {see}")
         return 2
     except SeatlookError as error:
         say(str(error))
         return error.exit_code
     except KeyboardInterrupt:
-        say("interrupted; no file was left half written")
+        say(
+            "interrupted; no file was left half written", *_GO_ON.get(words[0] if words else "", ())
+        )
         return 130
     except OSError as error:
         say(f"{error.filename or 'file system'}: {error.strerror or error}")

@@ -86,6 +86,10 @@ def init(
     force
         Write over a scene that is in the folder already.
     """
+    if pattern.suffix.lower() != ".dxf" and foam.suffix.lower() == ".dxf":
+        raise InputError.single(
+            "files", got=f"{pattern.name} {foam.name}", expected="first the pattern, then the foam"
+        )
     there = [name for name in _FILES if (out / name).exists()]
     if there and not force:
         raise InputError.single(
@@ -99,6 +103,7 @@ def init(
     cloth, filling = io.read_material(material), io.read_foam_material(foam_material)
     proposal = _sewn(sources, size, units)
     body, unit = _foam(foam, filling, unit, up)
+    _tell_size(body, up)
     with progress() as show:
         show("lay out")
         layout = lay_out(proposal.pattern, body, first=top, turn_deg=turn_deg, free=proposal.free)
@@ -164,6 +169,20 @@ def _foam(
             raise error from None
     note(f"{path}: read in metres, by its size")
     return body, "m"
+
+
+def _tell_size(body: Foam, up: Literal["z", "y"]) -> None:
+    """Say how large the foam is; one that stands on its edge is most often in other axes."""
+    import numpy as np
+
+    width, depth, height = (round(1e3 * v) for v in np.ptp(body.vertices, axis=0))
+    note(f"foam: {width} mm wide, {depth} mm deep, {height} mm high")
+    if height > min(width, depth):
+        other = "z" if up == "y" else "y"
+        note(
+            "it is higher than wide or deep: "
+            f"if its file's vertical axis is {other}, say --up {other}"
+        )
 
 
 def _hooks(

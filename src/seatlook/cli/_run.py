@@ -50,6 +50,7 @@ Scored = Annotated[
     bool, Parameter(help="Score how visible the wrinkles are, always where [accept] limits it.")
 ]
 Names = Annotated[tuple[str, ...], Parameter(negative=())]
+_NO_SCENES = (".dxf", ".obj", ".stl", ".ply", ".npz")
 
 
 def check(
@@ -72,7 +73,8 @@ def check(
     read = load(scene, seed, element_size_mm, changes)
     cover = assemble(read)
     wave = min(foam_wavelength(m.fabric, read.foam.material) for m in cover.materials)
-    seams = [_seam_row(seam_ease(read.pattern, seam)) for seam in read.pattern.seams]
+    eases = [seam_ease(read.pattern, seam) for seam in read.pattern.seams]
+    seams = [_seam_row(ease) for ease in sorted(eases, key=lambda ease: -abs(ease.share))]
     table(
         ("what", "value"),
         [
@@ -90,7 +92,13 @@ def check(
         json=json,
     )
     if seams and not json:
-        table(tuple(seams[0]), [tuple(row.values()) for row in seams], json=False)
+        table(tuple(seams[0]), [tuple(map(_short, row.values())) for row in seams], json=False)
+    note(f"nothing wrong; to solve and draw it: seatlook evaluate {scene} --out FOLDER")
+
+
+def _short(value: Any) -> Any:
+    """A figure of a seam for a reader: to a hundredth of a millimetre or percent."""
+    return f"{round(value, 2) + 0.0:.2f}" if isinstance(value, float) else value
 
 
 def _seam_row(ease: SeamEase) -> dict[str, Any]:
@@ -248,6 +256,11 @@ def load(
     from seatlook import io
     from seatlook.study.placing import placed
 
+    if path.suffix.lower() in _NO_SCENES:
+        raise InputError.single(
+            "scene", got=path.name, expected="a scene file (.toml)",
+            hint="make one of a pattern and a foam with: seatlook init",
+        )  # fmt: skip
     scene: Scene = placed(io.load_scene(path, changes=changes))
     return replace(
         scene,

@@ -120,7 +120,7 @@ def _open(path: Path) -> Any:
 
 
 def _refusal(path: Path, error: Exception) -> InputError:
-    got = str(error) or type(error).__name__
+    got = str(error).rstrip(".") or type(error).__name__
     return InputError.single("file", got=got, expected="a whole DXF file", file=path)
 
 
