@@ -66,6 +66,16 @@ def V_SmithGGXCorrelated(alpha_x, alpha_y, ToV, BoV, NoV, ToL, BoL, NoL):
 
 
 @leaf()
+def GGX(alpha, NoV, NoL, NoH):
+    """Product of both terms above for a lobe as wide along as across."""
+    a2 = alpha * alpha
+    d = NoH * NoH * (a2 - 1.0) + 1.0
+    view = NoL * np.sqrt(a2 + (1.0 - a2) * NoV * NoV)
+    light = NoV * np.sqrt(a2 + (1.0 - a2) * NoL * NoL)
+    return a2 / (2.0 * np.pi * d * d * (view + light))
+
+
+@leaf()
 def F_Schlick(f0, f90, LoH):
     """Schlick 1994, eq. 15."""
     m = 1.0 - LoH
@@ -184,22 +194,41 @@ class Layers(NamedTuple):
     base: float
 
 
+class Rows(NamedTuple):
+    """Where a surface point lies on the tables' axis of roughness: index and weight, per lobe."""
+
+    base: tuple[int, float]
+    coat: tuple[int, float]
+    nap: tuple[int, float]
+
+
 @leaf()
-def layers_at(tables, material, roughness, means, mu):
+def rows_of(tables, material, roughness):
+    """Rows for the base's roughness and the material's coat and nap."""
+    n = tables.scale.shape[0]
+    return Rows(
+        cell(roughness, ROUGHNESS_LOW, 1.0, n),
+        cell(material.coat_roughness, ROUGHNESS_LOW, 1.0, n),
+        cell(material.sheen_roughness, ROUGHNESS_LOW, 1.0, n),
+    )
+
+
+@leaf()
+def layers_at(tables, material, rows, means, mu):
     """Layers at cosine ``mu``."""
     j, b = cell(np.sqrt(mu), 0.0, 1.0, tables.scale.shape[1])
-    i, a = cell(roughness, ROUGHNESS_LOW, 1.0, tables.scale.shape[0])
+    i, a = rows.base
     scale, bias = _bilinear(tables.scale, i, a, j, b), _bilinear(tables.bias, i, a, j, b)
     coat, nap, lost = 1.0, 1.0, 0.0
     share = coat_share(material)
     if share > 0.0:
-        i, a = cell(material.coat_roughness, ROUGHNESS_LOW, 1.0, tables.scale.shape[0])
+        i, a = rows.coat
         low, high = _bilinear(tables.scale, i, a, j, b), _bilinear(tables.bias, i, a, j, b)
         lost = 1.0 - low - high
         coat -= share * (COAT_F0 * low + high + means.coat_again * lost)
     share = sheen_share(material)
     if share > 0.0:
-        i, a = cell(material.sheen_roughness, ROUGHNESS_LOW, 1.0, tables.sheen.shape[0])
+        i, a = rows.nap
         nap -= share * _bilinear(tables.sheen, i, a, j, b)
     nap *= coat
     f0 = material.f0
@@ -227,6 +256,7 @@ class View(NamedTuple):
     alpha_x: float
     alpha_y: float
     table_roughness: float
+    rows: Rows
     means: Means
     layers: Layers
     colour: tuple[float, float, float]
@@ -241,13 +271,14 @@ def view_of(tables, material, roughness, colour, ToV, BoV, NoV):
     ax, ay = alphas(roughness, material.anisotropy)
     narrow = np.sqrt(min(ax, ay))
     means = means_of(tables, material, narrow)
-    layers = layers_at(tables, material, narrow, means, NoV)
+    rows = rows_of(tables, material, narrow)
+    layers = layers_at(tables, material, rows, means, NoV)
     m, f0, mean = material.metalness, material.f0, means.base
     # Dielectric and metal in linear mixture, so energy mixes too.
     if m == 0.0:
         low, high = (f0, f0, f0), (F90(f0), F90(f0), F90(f0))
         again = (means.again, means.again, means.again)
-        return View(ToV, BoV, NoV, ax, ay, narrow, means, layers, colour, low, high, again)
+        return View(ToV, BoV, NoV, ax, ay, narrow, rows, means, layers, colour, low, high, again)
     r, g, b = colour
     low = ((1.0 - m) * f0 + m * r, (1.0 - m) * f0 + m * g, (1.0 - m) * f0 + m * b)
     f90 = (1.0 - m) * F90(f0)
@@ -257,7 +288,7 @@ def view_of(tables, material, roughness, colour, ToV, BoV, NoV):
         F_multiple(low[1], high[1], mean),
         F_multiple(low[2], high[2], mean),
     )
-    return View(ToV, BoV, NoV, ax, ay, narrow, means, layers, colour, low, high, again)
+    return View(ToV, BoV, NoV, ax, ay, narrow, rows, means, layers, colour, low, high, again)
 
 
 @leaf()
@@ -280,23 +311,35 @@ def brdf(tables, material, coupling, view, wider, ToL, BoL, NoL, out):
     ax, ay = _widened(view.alpha_x, wider), _widened(view.alpha_y, wider)
     lobe = D_GGX(ax, ay, ToH, BoH, NoH)
     lobe *= V_SmithGGXCorrelated(ax, ay, view.ToV, view.BoV, view.NoV, ToL, BoL, NoL)
-    here, there = view.layers, layers_at(tables, material, view.table_roughness, view.means, NoL)
+    _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out)
+
+
+@leaf()
+def brdf_isotropic(tables, material, coupling, view, wider, NoL, NoH, LoH, out):
+    """Same where the lobe is as wide along as across, by the cosines alone."""
+    lobe = GGX(_widened(view.alpha_x, wider), view.NoV, NoL, NoH)
+    _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out)
+
+
+@leaf()
+def _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out):
+    here, there = view.layers, layers_at(tables, material, view.rows, view.means, NoL)
     lost = (1.0 - here.scale - here.bias) * (1.0 - there.scale - there.bias)
     lost /= np.pi * (1.0 - view.means.base)
     diffuse = (1.0 - material.metalness) * here.base * there.base / (np.pi * coupling)
     nap = min(here.nap, there.nap)
+    m = 1.0 - LoH
+    m *= m * m * m * m
     for c in range(3):
-        specular = F_Schlick(view.f0[c], view.f90[c], LoH) * lobe + view.again[c] * lost
-        out[c] = nap * specular + view.colour[c] * diffuse
+        fresnel = view.f0[c] + (view.f90[c] - view.f0[c]) * m
+        out[c] = nap * (fresnel * lobe + view.again[c] * lost) + view.colour[c] * diffuse
     if sheen_share(material) > 0.0:
         _add_sheen(tables, material, min(here.coat, there.coat), view.NoV, NoL, NoH, out)
     share = coat_share(material)
     if share > 0.0:
-        a = _widened(material.coat_roughness**2, wider)
-        lobe = D_GGX(a, a, np.sqrt(max(0.0, 1.0 - NoH * NoH)), 0.0, NoH)
-        lobe *= V_SmithGGXCorrelated(a, a, view.ToV, view.BoV, view.NoV, ToL, BoL, NoL)
+        lobe = GGX(_widened(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
         again = here.coat_lost * there.coat_lost / (np.pi * (1.0 - view.means.coat))
-        coat = share * (F_Schlick(COAT_F0, 1.0, LoH) * lobe + view.means.coat_again * again)
+        coat = share * ((COAT_F0 + (1.0 - COAT_F0) * m) * lobe + view.means.coat_again * again)
         for c in range(3):
             out[c] += coat
 

@@ -8,10 +8,9 @@ from numba import njit
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import (
     COAT_F0,
-    D_GGX,
+    GGX,
     MIN_ALPHA,
     F_Schlick,
-    V_SmithGGXCorrelated,
     albedo_towards,
     brdf,
     coat_share,
@@ -76,26 +75,20 @@ def _density(NoV, NoH):
 
 
 @leaf()
-def _ggx(alpha, NoV, NoL, NoH):
-    """D times V of an isotropic lobe."""
-    a, sides = max(alpha, MIN_ALPHA), np.sqrt(max(0.0, 1.0 - NoH * NoH))
-    v, l = np.sqrt(max(0.0, 1.0 - NoV * NoV)), np.sqrt(max(0.0, 1.0 - NoL * NoL))
-    return D_GGX(a, a, sides, 0.0, NoH) * V_SmithGGXCorrelated(a, a, v, 0.0, NoV, l, 0.0, NoL)
-
-
-@leaf()
 def _reflectance(material, n, v, d):
     """What base and coat reflect of light from ``d`` towards ``v``, but for bounces in them."""
     h = unit(along(v, 1.0, d))
     NoV, NoL, NoH, LoH = dot(n, v), dot(n, d), min(1.0, dot(n, h)), min(1.0, dot(d, h))
     metal, f0 = material.metalness, material.f0
     f0 += metal * ((material.albedo[0] + material.albedo[1] + material.albedo[2]) / 3.0 - f0)
-    value = F_Schlick(f0, min(1.0, 50.0 * f0), LoH) * _ggx(material.roughness**2, NoV, NoL, NoH)
+    value = F_Schlick(f0, min(1.0, 50.0 * f0), LoH) * GGX(
+        max(material.roughness**2, MIN_ALPHA), NoV, NoL, NoH
+    )
     share = coat_share(material)
     if share > 0.0:
         coat = F_Schlick(COAT_F0, 1.0, LoH)
         value *= 1.0 - share * coat
-        value += share * coat * _ggx(material.coat_roughness**2, NoV, NoL, NoH)
+        value += share * coat * GGX(material.coat_roughness**2, NoV, NoL, NoH)
     return value * NoL
 
 

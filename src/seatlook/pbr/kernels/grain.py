@@ -64,6 +64,8 @@ def _filtered(t, textures, material, u, v, width):
     coarse = min(fine + 1, last)
     mix = min(1.0, level - fine)
     low = _bilinear(t, textures, fine, u / tile, v / tile)
+    if mix == 0.0:
+        return low
     high = _bilinear(t, textures, coarse, u / tile, v / tile)
     return (
         low[0] + mix * (high[0] - low[0]),

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from numba import njit
 
 from seatlook.pbr.kernels import leaf
-from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, view_of
+from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, brdf_isotropic, view_of
 from seatlook.pbr.kernels.grain import Textures, grain, holes
 from seatlook.pbr.kernels.light import (
     SMALL,
@@ -95,10 +95,49 @@ def _pattern_at(mesh, f, b1, b2):
     )
 
 
+class Place(NamedTuple):
+    """Point of the surface as its relief does not change it, seen by all samples of a pixel.
+
+    ``n`` faces the eye along ``v``; ``warp, weft`` lie in the surface; ``diffuse, mirrored, open``
+    as in ``light.Around``.
+    """
+
+    p: tuple[float, float, float]
+    v: tuple[float, float, float]
+    n: tuple[float, float, float]
+    warp: tuple[float, float, float]
+    weft: tuple[float, float, float]
+    diffuse: tuple[float, float, float]
+    mirrored: tuple[float, float, float]
+    open: float
+
+
 @leaf()
-def _detail(mesh, look, material, f, hit, n, v):
+def _place(mesh, around, f, hit):
+    b1, b2, _, plane, ray, _ = hit
+    v = (-ray[0], -ray[1], -ray[2])
+    n = unit(blend(mesh.normals, mesh.faces, f, b1, b2))
+    if dot(plane, v) < 0.0:
+        n = (-n[0], -n[1], -n[2])
+    n = towards_eye(n, v)
+    warp, weft = frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
+    return Place(
+        blend(mesh.vertices, mesh.faces, f, b1, b2),
+        v,
+        n,
+        warp,
+        weft,
+        blend(around.diffuse, mesh.faces, f, b1, b2),
+        blend(around.mirrored, mesh.faces, f, b1, b2),
+        _blend_one(around.open, mesh.faces, f, b1, b2),
+    )
+
+
+@leaf()
+def _detail(mesh, look, material, f, hit, place):
     """Normal with relief and thread, base colour, roughness, metalness, light left by the holes."""
     b1, b2, t, plane, _, spread = hit
+    n, v = place.n, place.v
     roughness, metal, tint = material.roughness, material.metalness, (1.0, 1.0, 1.0)
     share, own, kept = 1.0, 0.0, 1.0
     if material.texture >= 0 or material.maps >= 0 or material.perforation_diameter > 0.0:
@@ -110,8 +149,7 @@ def _detail(mesh, look, material, f, hit, n, v):
         if material.texture >= 0:
             gu, gv, roughness, share = grain(look.textures, material, roughness, u, w, width)
         if material.texture >= 0 or material.maps >= 0:
-            warp, weft = frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
-            n = unit(along(along(n, -su - gu, warp), -sv - gv, weft))
+            n = unit(along(along(n, -su - gu, place.warp), -sv - gv, place.weft))
         if material.perforation_diameter > 0.0:
             kept = 1.0 - holes(
                 material.perforation_pitch, material.perforation_diameter, u, w, width
@@ -137,52 +175,58 @@ def _detail(mesh, look, material, f, hit, n, v):
 
 @leaf()
 def _point(q, part):
-    """Point of the light's disc for sample q; -1 and -2 are those that stand for two of four."""
+    """Point of the light's disc for part of sample q; -3 stands for a pixel, -1 and -2 for half."""
     if q >= 0:
         return q
+    if q == -3:
+        return part
     return 3 * part if q == -1 else 1 + part
 
 
 @leaf()
-def sample(mesh, look, lights, around, f, hit, q, visible, work):
+def sample(mesh, look, lights, around, f, hit, place, q, visible, work):
     """Radiance of one sample into ``work[0]``; ``work`` is (3, 3).
 
     ``hit``: (weight, weight, distance, face normal, unit ray, angle between samples);
     ``visible`` (k,): share of each light that is not hidden; ``q``: number of the sample in its
-    pixel, -1 or -2 where it is the first or second that stands for two.
+    pixel, -1 or -2 where it is the first or second that stands for two, -3 where it does for four.
     """
-    b1, b2, _, plane, ray, _ = hit
-    v = (-ray[0], -ray[1], -ray[2])
-    p = blend(mesh.vertices, mesh.faces, f, b1, b2)
-    n = unit(blend(mesh.normals, mesh.faces, f, b1, b2))
-    if dot(plane, v) < 0.0:
-        n = (-n[0], -n[1], -n[2])
-    n = towards_eye(n, v)
-    material = look.materials[mesh.panel[f]]
-    n, colour, roughness, metal, kept = _detail(mesh, look, material, f, hit, n, v)
+    material, v = look.materials[mesh.panel[f]], place.v
+    n, colour, roughness, metal, kept = _detail(mesh, look, material, f, hit, place)
     if metal != material.metalness:
         look.changed[0] = material
         look.changed[0].metalness = metal
         material = look.changed[0]
     n = towards_eye(n, v)
-    warp, weft = frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
+    even = material.anisotropy == 0.0
+    warp, weft = place.warp, place.weft
+    if not even:
+        warp, weft = frame(n, warp)
     out, f_out = work[0], work[1]
     view = view_of(look.tables, material, roughness, colour, dot(warp, v), dot(weft, v), dot(n, v))
-    _from_around(mesh, look, around, f, b1, b2, material, view, n, v, work)
+    _from_around(look, around, place, material, view, n, work)
     mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
     for k in range(len(lights.near)):
         if visible[k] <= 0.0:
             continue
-        middle, e = arriving(lights, k, p)
-        angle = angle_of(lights, k, p)
-        # A sample that stands for two looks at two points of the light.
-        parts = 2 if q < 0 and angle >= SMALL else 1
+        middle, e = arriving(lights, k, place.p)
+        angle = angle_of(lights, k, place.p)
+        # A sample that stands for several looks at as many points of the light.
+        parts = 1
+        if q < 0 and angle >= SMALL:
+            parts = 4 if q == -3 else 2
         for part in range(parts):
             l, wider = towards_part(lights, angle, middle, _point(q, part))
             NoL = above_horizon(dot(n, l), angle / np.sqrt(len(lights.disc)))
             if NoL <= 1e-5:
                 continue
-            brdf(look.tables, material, mean, view, wider, dot(warp, l), dot(weft, l), NoL, f_out)
+            if even:
+                h = unit(along(v, 1.0, l))
+                NoH, LoH = min(1.0, dot(n, h)), min(1.0, dot(l, h))
+                brdf_isotropic(look.tables, material, mean, view, wider, NoL, NoH, LoH, f_out)
+            else:
+                x, y = dot(warp, l), dot(weft, l)
+                brdf(look.tables, material, mean, view, wider, x, y, NoL, f_out)
             for c in range(3):
                 out[c] += f_out[c] * NoL * e[c] * visible[k] / parts
     for c in range(3):
@@ -190,29 +234,32 @@ def sample(mesh, look, lights, around, f, hit, q, visible, work):
 
 
 @leaf()
-def _from_around(mesh, look, around, f, b1, b2, material, view, n, v, work):
+def _from_around(look, around, place, material, view, n, work):
     """Light of the sky and of other faces that goes to the eye, into ``work[0]``."""
     out, specular, diffuse = work[0], work[1], work[2]
     coat = albedo_towards(look.tables, material, view, specular, diffuse)
-    everywhere = blend(around.diffuse, mesh.faces, f, b1, b2)
-    mirrored = blend(around.mirrored, mesh.faces, f, b1, b2)
-    share = _blend_one(around.open, mesh.faces, f, b1, b2)
     base = top = row_of(around.even)
     if len(around.panorama):
-        mirror = along((-v[0], -v[1], -v[2]), 2.0 * dot(n, v), n)
+        mirror = along((-place.v[0], -place.v[1], -place.v[2]), 2.0 * view.NoV, n)
         base = top = panorama_towards(around.panorama, view.table_roughness, mirror)
         if coat > 0.0:
             top = panorama_towards(around.panorama, material.coat_roughness, mirror)
     for c in range(3):
-        out[c] = diffuse[c] * everywhere[c] + (specular[c] + coat) * mirrored[c]
-        out[c] += share * (specular[c] * base[c] + coat * top[c])
+        out[c] = diffuse[c] * place.diffuse[c] + (specular[c] + coat) * place.mirrored[c]
+        out[c] += place.open * (specular[c] * base[c] + coat * top[c])
+
+
+@leaf()
+def _plain(material):
+    """Whether a surface is the same all over a pixel."""
+    return material.texture < 0 and material.maps < 0 and material.perforation_diameter == 0.0
 
 
 @leaf()
 def _alike(mesh, ids, visibility, reach, x, y):
     """Whether the 2 x 2 samples from (x, y) see one panel, unbent, unshadowed by an edge, no seam.
 
-    Half of them are enough then.
+    Half of them are enough then, or one.
     """
     f = ids[y, x]
     i, j, k = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
@@ -239,7 +286,7 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, out):
 
     ``ids`` (h factor, w factor): face per sample, -1 for none; ``visibility`` likewise, (k, ., .),
     in 1/255. Returns the number of samples shaded: of 2 x 2 that are alike, only the diagonal is,
-    each for an area twice as large.
+    each for an area twice as large, or one for all where the surface has no relief.
     """
     work = np.zeros((3, 3))
     visible = np.ones(len(lights.near))
@@ -255,27 +302,39 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, out):
         x = tile % columns * _TILE + inside % _TILE
         if y >= height or x >= width:
             continue
-        pair = factor == 2 and ids[2 * y, 2 * x] >= 0
+        first = ids[factor * y, factor * x]
+        pair = factor == 2 and first >= 0
         pair = pair and _alike(mesh, ids, visibility, near_seam, 2 * x, 2 * y)
-        weight = 0.5 if pair else 1.0 / (factor * factor)
-        wide = np.sqrt(2.0) * spread if pair else spread
+        one = pair and _plain(look.materials[mesh.panel[first]])
+        weight = 1.0 / (factor * factor)
+        if pair:
+            ray = ray_through(eye, 2 * x + 0.5, 2 * y + 0.5)
+            b1, b2, t, plane = meet(mesh, eye, first, ray)
+            hit = (b1, b2, t, plane, ray, np.sqrt(2.0) * spread)
+            place = _place(mesh, around, first, hit)
+            weight = 1.0 if one else 0.5
         for q in range(factor * factor):
-            if pair and q % 3:
+            if (pair and q % 3) or (one and q):
                 continue
             i, j = x * factor + q % factor, y * factor + q // factor
             f = ids[j, i]
             if f < 0:
                 continue
             count += 1
-            ray = ray_through(eye, i, j)
-            b1, b2, t, plane = meet(mesh, eye, f, ray)
+            point = q
+            if not one:
+                ray = ray_through(eye, i, j)
+                b1, b2, t, plane = meet(mesh, eye, f, ray)
+                hit = (b1, b2, t, plane, ray, np.sqrt(2.0) * spread if pair else spread)
+            if one:
+                point = -3
+            elif pair:
+                point = -1 if q == 0 else -2
+            else:
+                place = _place(mesh, around, f, hit)
             for k in range(len(visible)):
                 visible[k] = visibility[k, j, i] / 255.0
-            hit = (b1, b2, t, plane, ray, wide)
-            point = q
-            if pair:
-                point = -1 if q == 0 else -2
-            sample(mesh, look, lights, around, f, hit, point, visible, work)
+            sample(mesh, look, lights, around, f, hit, place, point, visible, work)
             for c in range(3):
                 out[y, x, c] += weight * work[0, c]
     return count

@@ -15,6 +15,7 @@ from seatlook.pbr.kernels.brdf import (
     lookup,
     lookup_mean,
     means_of,
+    rows_of,
 )
 
 
@@ -115,10 +116,11 @@ def coupling(tables, materials, out):
         for i in range(out.shape[1]):
             roughness = ROUGHNESS_LOW + (1.0 - ROUGHNESS_LOW) * i / (out.shape[1] - 1)
             means = means_of(tables, materials[p], roughness)
+            rows = rows_of(tables, materials[p], roughness)
             total = 0.0
             for j in range(n):
                 s = (j + 0.5) / n
-                base = layers_at(tables, materials[p], roughness, means, s * s).base
+                base = layers_at(tables, materials[p], rows, means, s * s).base
                 total += base * s * s * 2.0 * s
             out[p, i] = 2.0 * total / n
 
