@@ -28,9 +28,12 @@ def studio():
 
 
 def difference(studio, material, rig, *, depth, tier, textured):
-    """FLIP and block error, and the FLIP of the reference's own noise; 2 x 64 samples per pixel."""
+    """FLIP and block error, and the FLIP of the reference's own noise.
+
+    128 samples per pixel, 256 in full light, whose noise alone is half of the bar at 128.
+    """
     appearance = look(material, textured=textured)
-    a, b = (
+    pictures = [
         trace(
             studio,
             appearance,
@@ -41,8 +44,10 @@ def difference(studio, material, rig, *, depth, tier, textured):
             relief=relief_of(appearance),
             seed=seed,
         )
-        for seed in (0, 1)
-    )
+        for seed in range(2 if depth == 2 else 4)
+    ]
+    half = len(pictures) // 2
+    a, b = np.mean(pictures[:half], axis=0), np.mean(pictures[half:], axis=0)
     image = studio.render(appearance, rig=rig, camera=camera(), quality=tier)
     floor = compare(a, b, rig=rig, cover=image.cover).flip / 2
     got = compare((a + b) / 2, image.radiance, rig=rig, cover=image.cover)
@@ -78,7 +83,7 @@ def test_direct_light(studio, material, light, textured):
 
 
 @pytest.mark.parametrize("textured", [False, pytest.param(True, marks=MISSED)])
-@pytest.mark.parametrize("material", [pytest.param("black-leather", marks=MISSED), "suede"])
+@pytest.mark.parametrize("material", ["black-leather", "suede"])
 def test_full_light(studio, material, textured):
     (rig,) = FULL.values()
     got = difference(studio, material, rig, depth=8, tier="T3", textured=textured)
