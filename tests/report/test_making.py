@@ -42,5 +42,12 @@ def test_page_shows_the_section_and_the_pictures_in_its_folder(solution, tmp_pat
     assert made.pictures == ("timeline.png",)
     text = page_html(dataclasses.replace(data, making=made))
     assert 'src="timeline.png"' in text
+    assert "timeline.gif" not in text
+    (tmp_path / "timeline.gif").write_bytes(b"x")
+    made = making_section(solution, tmp_path)
+    assert made.pictures == ("timeline.png", "timeline.gif")
+    moving = page_html(dataclasses.replace(data, making=made))
+    # It moves only when asked to.
+    assert '<details>\n<summary>Moving</summary>\n<img class="own" src="timeline.gif"' in moving
     assert made.over[0] in text
     assert 'id="making"' not in page_html(data)

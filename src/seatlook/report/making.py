@@ -24,13 +24,19 @@ class MakingSection:
     work : one row per part of the energy balance; None where the solver kept no account
     hooks : one row per hook: its rings and what they pull
     over : sentences on hooks that pull harder than their limit
-    pictures : paths of strip and animation, where they lie in the folder
+    strip, animation : paths of these pictures; None where they are not in the folder
     """
 
     work: Table | None
     hooks: Table
     over: tuple[str, ...]
-    pictures: tuple[str, ...]
+    strip: str | None
+    animation: str | None
+
+    @property
+    def pictures(self) -> tuple[str, ...]:
+        """Paths of what there is of both."""
+        return tuple(name for name in (self.strip, self.animation) if name)
 
     @property
     def shown(self) -> bool:
@@ -40,11 +46,13 @@ class MakingSection:
 
 def making_section(solution: Solution, folder: Path) -> MakingSection:
     """Gather the section; pictures are those that are in ``folder`` already."""
+    strip, animation = (n if (folder / n).is_file() else None for n in (STRIP, ANIMATION))
     return MakingSection(
         work=_work(solution),
         hooks=_hooks(solution),
         over=overpulled(solution),
-        pictures=tuple(name for name in (STRIP, ANIMATION) if (folder / name).is_file()),
+        strip=strip,
+        animation=animation,
     )
 
 
