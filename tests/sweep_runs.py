@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from scene_files import write_two_panels
 from seatlook.io.sweep import read_sweep
@@ -30,6 +33,19 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in files}
 
 
+@contextmanager
+def local_cluster() -> Iterator[Any]:
+    """Two Dask worker processes here; closing them takes long where the machine is loaded."""
+    distributed = importlib.import_module("distributed")
+    cluster = distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    )
+    try:
+        yield cluster
+    finally:
+        cluster.close(timeout=120)
+
+
 def children(pid: int) -> list[int]:
     """Processes that a process started, whichever of its threads did."""
     tasks = Path(f"/proc/{pid}/task").glob("*/children")
@@ -42,7 +58,7 @@ def resident(pid: int) -> float:
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
-def wait_for(holds: Callable[[], object], *, seconds: float = 90.0) -> None:
+def wait_for(holds: Callable[[], object], *, seconds: float = 240.0) -> None:
     end = time.monotonic() + seconds
     while not holds():
         assert time.monotonic() < end
@@ -71,7 +87,7 @@ def kill_and_run_again(folder: Path, *, before: Callable[[Path], object]) -> tup
     """
     cells = folder / "out" / "cells"
     process = start_sweep(folder, "--quiet", "--workers", "2")
-    wait_for(lambda: cells.is_dir() and before(cells), seconds=300)
+    wait_for(lambda: cells.is_dir() and before(cells))
     workers = children(process.pid)
     process.kill()
     process.communicate()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import importlib
 import json
 import os
 import random
@@ -22,7 +21,15 @@ from seatlook.io.sweep import read_sweep
 from seatlook.study import cell
 from seatlook.study.cell import Cell, plan, run_cell
 from seatlook.study.sweep import run_cluster, run_local, shard, unfinished
-from sweep_runs import children, contents, kill_and_run_again, seeds, start_sweep, wait_for
+from sweep_runs import (
+    children,
+    contents,
+    kill_and_run_again,
+    local_cluster,
+    seeds,
+    start_sweep,
+    wait_for,
+)
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +138,6 @@ def test_an_interrupted_sweep_ends_at_once_and_says_how_to_go_on(four, tmp_path,
             break
     assert process.returncode == 130
     assert said.endswith("the same command again goes on where it was: what is done is kept\n")
-    assert "Traceback" not in said
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in workers))
     assert 0 < len(list(folder.glob("*.json"))) < 30
     assert not list(folder.glob("*.failed.json"))
@@ -140,10 +146,7 @@ def test_an_interrupted_sweep_ends_at_once_and_says_how_to_go_on(four, tmp_path,
 
 def test_a_cluster_gives_the_same_bytes_though_a_worker_is_killed(four, tmp_path):
     cells, expected = four
-    distributed = importlib.import_module("distributed")
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-    ) as cluster:
+    with local_cluster() as cluster:
         first = next(iter(cluster.workers.values()))
         run_ = run_cluster(cells, tmp_path, scheduler=cluster.scheduler_address)
         found = [next(run_)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import itertools
 import os
 import random
@@ -13,7 +12,7 @@ import pytest
 
 from seatlook.study.cell import Cell
 from seatlook.study.sweep import run_cluster, run_local
-from sweep_runs import children, contents, kill_and_run_again, resident, seeds
+from sweep_runs import children, contents, kill_and_run_again, local_cluster, resident, seeds
 
 pytestmark = [pytest.mark.validate, pytest.mark.render]
 
@@ -54,10 +53,7 @@ def test_two_workers_leave_the_same_bytes(whole, tmp_path):
 
 def test_a_cluster_leaves_the_same_bytes_though_a_worker_is_killed(whole, tmp_path):
     cells, expected, _ = whole
-    distributed = importlib.import_module("distributed")
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-    ) as cluster:
+    with local_cluster() as cluster:
         first = next(iter(cluster.workers.values()))
         running = run_cluster(cells, tmp_path, scheduler=cluster.scheduler_address)
         found = list(itertools.islice(running, COUNT // 2))
