@@ -182,10 +182,11 @@ def draw_pictures(
 
     ``radiance``: "npy" or "exr" to keep what was seen [cd/m2] beside each picture.
     """
-    pictures = {}
+    pictures: dict[tuple[str, str], str] = {}
+    steps = len(scene.rigs) * len(scene.textures)
     for rig in scene.rigs:
         for name, appearance in scene.textures.items():
-            say("render", rig=rig.name, texture=name)
+            say("render", rig=rig.name, texture=name, step=len(pictures), steps=steps)
             path = picture_path(name, rig.name)
             image = pbr.render(solution, appearance, rig=rig, camera=camera, quality=quality)
             replace(image, tone=tone).save(out / path)

@@ -120,6 +120,7 @@ def page_data(folder: Path, **changes: object) -> PageData:
         ),
         "provenance": MappingProxyType({"seatlook": "0.1.0", "scene": "sha256 abc"}),
         "status": "converged",
+        "summary": ("W2 is above 1 on 5 % of the cover, most in <insert>.",),
         "checks": (
             Check(name="seam gap", value="0.08 mm", limit="0.1 mm", kept=True),
             Check(name="W2 area, class A", value="12 %", limit="5 %", kept=False),

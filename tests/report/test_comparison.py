@@ -104,7 +104,8 @@ def test_the_page_says_first_what_differs(comparison, tmp_path):
 
 def test_the_page_has_wrinkles_parameters_and_answers_of_each_variant(comparison, tmp_path):
     page = write_comparison(comparison, tmp_path).read_text()
-    assert "W2 is above 1 on: pvc " in page
+    assert "Share of the cover with W2 above 1: pvc: " in page
+    assert "w2_mean: pvc" not in page
     assert "They differ most in " in page
     assert 'id="wrinkles"' in page
     assert "Distortion of the texture" not in page

@@ -357,9 +357,12 @@ def test_no_accessibility_violation(browser, address):
     context = browser.new_context(offline=True, bypass_csp=True)
     page = context.new_page()
     page.goto(address)
-    result = axe.run(page)
+    for steps in ((), ("m", "m", "m"), ("?",)):  # as it opens, side by side, with the list of keys
+        for key in steps:
+            page.keyboard.press(key)
+        result = axe.run(page)
+        assert result.violations_count == 0, result.generate_report()
     context.close()
-    assert result.violations_count == 0, result.generate_report()
 
 
 def test_without_scripts_pictures_and_maps_remain(browser, address):

@@ -61,7 +61,7 @@ def write_comparison(
         rigs=tuple(rig_head(rig) for rig in comparison.first.scene.rigs),
         pictures=MappingProxyType(pictures),
         maps=tuple(_maps(comparison, folder)),
-        zones=comparison.table("w2_p95"),
+        zones=_zones(comparison, "w2_p95"),
         differences=_differences(comparison, scores),
         wrinkles=wrinkles,
         spots=wrinkles.spots,
@@ -98,12 +98,14 @@ def _pictures(
     comparison: Comparison, folder: Path, progress: Progress | None
 ) -> dict[tuple[str, str], str]:
     """Draw every cell; variants of one texture lie below each other, under the same light."""
-    pictures = {}
+    pictures: dict[tuple[str, str], str] = {}
+    steps = len(comparison.textures) * len(comparison.variants) * len(comparison.rigs)
     for texture in comparison.textures:
         for variant in comparison.variants:
             for rig in comparison.rigs:
                 if progress is not None:
-                    progress("render", variant=variant, texture=texture, rig=rig)
+                    at = {"step": len(pictures), "steps": steps}
+                    progress("render", variant=variant, texture=texture, rig=rig, **at)
                 path = f"variants/{picture_path(rig, variant).removeprefix('images/')}"
                 path = f"{Path(path).with_suffix('')}/{Path(picture_path(texture, rig)).name}"
                 files.write_bytes(folder / path, comparison[variant, texture, rig].png)
@@ -114,8 +116,8 @@ def _pictures(
 def _summary(comparison: Comparison, scores: VariantScores | None) -> Iterator[str]:
     """How much each variant wrinkles, and where the others differ most from the first."""
     shares = {name: above_one(v.zones) for name, v in comparison.variants.items()}
-    said = ", ".join(f"{name} {number(100 * share)} %" for name, share in shares.items())
-    yield f"W2 is above 1 on: {said} of the cover."
+    said = "; ".join(f"{name}: {number(100 * share)} %" for name, share in shares.items())
+    yield f"Share of the cover with W2 above 1: {said}."
     first, *others = comparison.variants
     zone, *row = comparison.table("w2_mean").rows[0]
     found = dict(zip(comparison.variants, row, strict=False))
@@ -214,9 +216,15 @@ def _differences(
         {
             "Parameters that differ": _different_parameters(comparison),
             **({_VISIBILITY: scores.table()} if scores and scores.vwi else {}),
-            **{name: comparison.table(measure) for name, measure in _TABLES.items()},
+            **{name: _zones(comparison, measure) for name, measure in _TABLES.items()},
         }
     )
+
+
+def _zones(comparison: Comparison, measure: str) -> Table:
+    """The table of a measure, which is named above it and not in every head."""
+    table = comparison.table(measure)
+    return replace(table, heads=tuple(h.removeprefix(f"{measure}: ") for h in table.heads))
 
 
 def _different_parameters(comparison: Comparison) -> Table:
