@@ -90,7 +90,7 @@ def test_a_sweep_of_irregular_covers_leaves_a_map_and_its_causes(tmp_path, capsy
     )
     out = tmp_path / "out"
     assert run(["sweep", str(tmp_path / "sweep.toml"), "--out", str(out)]) == 0
-    assert "5 covers; " in capsys.readouterr().err
+    assert "5 of 5 covers converged; " in capsys.readouterr().err
     heads, first, second = (out / "inputs.csv").read_text().splitlines()
     assert heads == "input,rank_correlation,rank_correlation_of_size,noise"
     assert {first.split(",")[0], second.split(",")[0]} == {"ease", "foam"}

@@ -112,8 +112,8 @@ def _summarise(cells: Sequence[Cell], out: Path, *, json: bool) -> None:
         strongest = causes[0]
         says = "matters most" if strongest.matters else "is strongest, but not above the noise"
         note(
-            f"{words}: {count} covers; {strongest.input} {says} (rank correlation "
-            f"{strongest.strength:.2f} in size, noise {strongest.noise:.2f})"
+            f"{words}: {count} of {len(group)} covers converged; {strongest.input} {says} "
+            f"(rank correlation {strongest.strength:.2f} in size, noise {strongest.noise:.2f})"
         )
 
 

@@ -117,7 +117,7 @@ def draw_probability(cells: Sequence[Cell], folder: Path, path: Path) -> int:
         solution,
         share,
         camera=scene.cameras[0],
-        title=f"Probability that W2 is above 1, {count} covers",
+        title=f"Probability that W2 is above 1, {count} of {len(cells)} covers that converged",
         unit="1",
         value_range=(0.0, 1.0),
         colormap="cividis",
