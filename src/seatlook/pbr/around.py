@@ -114,7 +114,7 @@ class Surroundings:
     ) -> None:
         """What reflections towards the camera see, into ``open_`` (n,) and ``mirrored`` (n, 3)."""
         k = self.surface.vertices
-        key = ("lobes", camera.position.tobytes(), camera.target.tobytes(), level.strata)
+        key = ("lobes", camera_key(camera), level.factor, level.strata)
         eye, strata = np.array(camera.position), 3 * level.strata // 4
         seen = self.kept(key, lambda: self._lobes(eye, strata, ids))
         share, sent = np.empty(len(seen.which)), np.empty((len(seen.which), 3))
@@ -206,6 +206,12 @@ class Surroundings:
             middle[which[first:stop] - len(out)] = values[first:stop]
             out, first = np.concatenate([out, middle]), stop
         return out
+
+
+def camera_key(camera: Camera) -> Hashable:
+    """What tells cameras apart, whatever they are called."""
+    vectors = np.concatenate([camera.position, camera.target, camera.up]).tobytes()
+    return (vectors, camera.vertical_fov_deg, camera.size)
 
 
 def from_afar(look: shade.Look) -> np.ndarray:

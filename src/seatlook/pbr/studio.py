@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError, RenderError, did_you_mean
 from seatlook.model import Appearance, Camera, FloatArray, Light, Rig, Solution, Thread
-from seatlook.pbr.around import Surroundings
+from seatlook.pbr.around import Surroundings, camera_key
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
 from seatlook.pbr.foam import FOAM
@@ -120,7 +120,7 @@ class Studio:
         RenderError
             Nothing is in the picture.
         """
-        key = ("faces", _key(camera), factor)
+        key = ("faces", camera_key(camera), factor)
         return np.asarray(self._kept(key, lambda: self._draw(camera, factor)))
 
     def _draw(self, camera: Camera, factor: int) -> npt.NDArray[np.int32]:
@@ -148,7 +148,7 @@ class Studio:
         """Share of each light [1/255] seen by each sample, (lights, h, w)."""
         stack = np.empty((len(rig.lights), *ids.shape), dtype=np.uint8)
         for k, one in enumerate(rig.lights):
-            key = ("shadow", _key(camera), level.factor, level.rays, _light_key(one))
+            key = ("shadow", camera_key(camera), level.factor, level.rays, _light_key(one))
             make = functools.partial(self._shadow, rig, k, camera, level, ids)
             stack[k] = self._kept(key, make)
         return stack
@@ -322,11 +322,6 @@ def _edge_width(light: Light, camera: Camera) -> int:
     if light.near:
         half = light.size / max(float(np.linalg.norm(light.vector - camera.target)), 1e-6)
     return int(np.clip(np.ceil(np.tan(min(half, 1.0)) * _OCCLUDER / pixel), 1, 64))
-
-
-def _key(camera: Camera) -> Hashable:
-    vectors = np.concatenate([camera.position, camera.target, camera.up]).tobytes()
-    return (vectors, camera.vertical_fov_deg, camera.size)
 
 
 def _light_key(light: Light) -> Hashable:
