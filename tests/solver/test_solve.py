@@ -235,9 +235,10 @@ def test_going_on_from_rest_changes_nothing():
     np.testing.assert_allclose(again.positions, done.positions, atol=1e-6)
 
 
-def test_start_of_another_mesh_is_refused():
-    with pytest.raises(InputError, match="start: got a solution on another mesh"):
-        solve(laid(h=0.03), start=solve(laid(h=0.04)))
+def test_start_of_other_panels_is_refused():
+    other = dataclasses.replace(laid(h=0.04), panel_names=("another",))
+    with pytest.raises(InputError, match="start: got a cover of the panels another"):
+        solve(laid(h=0.03), start=solve(other))
 
 
 def hung(target_gap):

@@ -132,6 +132,10 @@ class FoamContact:
 
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
         """Second derivative in the positions [N/m]; ``definite`` leaves phi's curvature out."""
+        return diagonal_blocks(self.blocks(x, definite=definite))
+
+    def blocks(self, x: FloatArray, *, definite: bool = False) -> FloatArray:
+        """Diagonal blocks (n, 3, 3) of the Hessian; overwritten by the next call."""
         kernel.contact_blocks(
             x,
             self.field.coefficients,
@@ -142,7 +146,7 @@ class FoamContact:
             definite,
             self._blocks,
         )
-        return diagonal_blocks(self._blocks)
+        return self._blocks
 
     def _settled(self, x: FloatArray) -> FloatArray:
         n = len(self.area)

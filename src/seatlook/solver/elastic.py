@@ -89,6 +89,7 @@ class ElasticSheet:
             below = stiffness * (hem.density > 0.0)[:, None, None]
             doubled = Bending(self.edges, self._curvature, self.area, below)
             self._sewn = csc_array(doubled.stiffness() + self.folds.matrix())
+        self.rest, self.bending_stiffness = rest, stiffness
 
     @property
     def energies(self) -> tuple[Energy, ...]:

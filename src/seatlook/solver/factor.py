@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -18,6 +19,32 @@ class Preconditioner(Protocol):
     def solve(self, right: FloatArray, out: FloatArray) -> None:
         """Apply it to (n, 3) forces."""
         ...
+
+
+class Renewed:
+    """Preconditioner made again from the state at hand after every few uses, or on demand.
+
+    Parameters
+    ----------
+    make : returns it for the state that is being minimised
+    """
+
+    LASTS = 6
+
+    def __init__(self, make: Callable[[], Preconditioner]) -> None:
+        self._make, self._left = make, 0
+        self._now: Preconditioner | None = None
+
+    def solve(self, right: FloatArray, out: FloatArray) -> None:
+        """Apply it to (n, 3) forces."""
+        if self._now is None or self._left == 0:
+            self._now, self._left = self._make(), self.LASTS
+        self._left -= 1
+        self._now.solve(right, out)
+
+    def expire(self) -> None:
+        """Have it made again at the next use."""
+        self._left = 0
 
 
 class Factor:

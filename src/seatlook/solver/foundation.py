@@ -57,6 +57,11 @@ class Foundation:
         """Energy stored in the foam [J]; ``work`` is overwritten."""
         return self.contact.value(state, work) + self.settlement.value(state, work)
 
+    def blocks(self, state: FloatArray) -> FloatArray:
+        """Second derivative in each position, (n, 3, 3) [N/m], without what may be negative."""
+        positions = state[: len(self.contact.area)]
+        return self.contact.blocks(state, definite=True) + self.friction.blocks(positions)
+
     def extend(self, sheet: Preconditioner) -> Preconditioner:
         """Extend a preconditioner of the positions to the settlements."""
         link = np.where(self.contact.force > 0.0, self.contact.per_vertex, 0.0)

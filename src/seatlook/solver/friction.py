@@ -58,5 +58,9 @@ class Friction:
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
         """Second derivative [N/m], never indefinite."""
         del definite
+        return diagonal_blocks(self.blocks(x))
+
+    def blocks(self, x: FloatArray) -> FloatArray:
+        """Diagonal blocks (n, 3, 3) of the Hessian; overwritten by the next call."""
         kernel.friction_blocks(x, self.anchor, self.normal, self.limit, self.slip, self._blocks)
-        return diagonal_blocks(self._blocks)
+        return self._blocks

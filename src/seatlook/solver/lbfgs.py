@@ -10,11 +10,12 @@ from scipy.sparse import csc_array
 
 from seatlook.model import FloatArray
 from seatlook.solver.energy import Energy
-from seatlook.solver.factor import Preconditioner
+from seatlook.solver.factor import Preconditioner, Renewed
 from seatlook.solver.kernels import lbfgs as kernel
 
 _SHORTEST = 1e-10  # part of the full step; shorter ones are lost in rounding
 _ROUNDING = 1e-12  # of the value; smaller changes are rounding, and the slope decides
+_CUT = 0.1  # part of the full step; shorter ones tell that matrix and pairs are out of date
 _FLATTER = 0.8  # of the slope, in size, that such a step must end with
 
 
@@ -77,6 +78,7 @@ class Lbfgs:
         self.gradient = np.zeros(shape)
         self._trial_gradient, self._trial = np.zeros(shape), np.zeros(shape)
         self._direction, self._work = np.zeros(shape), np.zeros(shape)
+        self._share = 1.0
 
     def minimise(
         self,
@@ -89,7 +91,9 @@ class Lbfgs:
     ) -> Descent:
         """Lower the potential in place of ``x``; every step obeys Armijo's rule, up to rounding.
 
-        ``done`` looks at the gradient, which stays readable as ``self.gradient``.
+        ``done`` looks at the gradient, which stays readable as ``self.gradient``. Where a fresh
+        matrix can be had, pairs that led to a step cut short are forgotten for one: they come from
+        before a contact or a fold, and lead on into it.
         """
         value = potential.value(x, self.gradient)
         kept, evaluations = 0, 1
@@ -111,6 +115,9 @@ class Lbfgs:
                 continue
             kept = self._remember(x, kept)
             value = new
+            if self._share < _CUT and isinstance(factor, Renewed):
+                kept = 0
+                factor.expire()
         return Descent(value, iterations, evaluations, stalled=False)
 
     def _turn(self, factor: Preconditioner | None, kept: int) -> None:
@@ -139,6 +146,7 @@ class Lbfgs:
             tries += 1
             kernel.add_scaled(x, step, self._direction, self._trial)
             new = potential.value(self._trial, self._trial_gradient)
+            self._share = step
             if new <= value + self.ARMIJO * step * slope:
                 return new, tries
             if new <= value + _ROUNDING * abs(value):

@@ -119,8 +119,24 @@ class Membrane:
 
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
         """Second derivative (3n, 3n) [N/m]; ``definite`` keeps the tensile part of the stress."""
-        self._deform(x)
+        material, pull = self.tangent(x, definite=definite)
         of_face = self._edges.of_face
+        pairs = (np.repeat(of_face, 3, axis=1).ravel(), np.tile(of_face, (1, 3)).ravel())
+        count = len(self._edges.ends)
+        coupled = csr_array((material.ravel(), pairs), shape=(count, count))
+        rates = self._rates(x)
+        geometric = self._geometric(pull, definite)
+        return csc_array(rates.T @ (coupled @ rates) + kron(geometric, eye_array(3)))
+
+    def tangent(self, x: FloatArray, *, definite: bool = False) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of the energy [J] by the strains of the edges at ``x``.
+
+        Returns
+        -------
+        material : (m, 3, 3)   second derivative of each triangle's energy by its edges' strains
+        pull : (e,)            first derivative of all; ``definite`` keeps the tensile stress only
+        """
+        self._deform(x)
         material = np.empty((len(self._area), 3, 3))
         kernels.edge_stiffness(
             self._E,
@@ -133,12 +149,13 @@ class Membrane:
         )
         if self._unloading is not None:
             self._unloading.stiffness(self._E, self._natural, self._area, material)
-        pairs = (np.repeat(of_face, 3, axis=1).ravel(), np.tile(of_face, (1, 3)).ravel())
-        count = len(self._edges.ends)
-        coupled = csr_array((material.ravel(), pairs), shape=(count, count))
-        rates = self._rates(x)
-        geometric = self._geometric(definite)
-        return csc_array(rates.T @ (coupled @ rates) + kron(geometric, eye_array(3)))
+        stress = self._stress()
+        if definite:
+            kernels.clamp(stress)
+        share = self._area[:, None] * np.einsum("tck,tc->tk", self._natural, stress)
+        of_face, count = self._edges.of_face.ravel(), len(self._edges.ends)
+        pull = np.bincount(of_face, share.ravel(), minlength=count)
+        return material, np.asarray(pull, dtype=np.float64)
 
     def stiffness(self) -> csc_array:
         """Scalar stiffness (n, n) [N/m] of plane triangles, warp and weft each with its own."""
@@ -162,14 +179,9 @@ class Membrane:
         shape = (len(edges.ends), x.size)
         return csr_array((values.ravel(), columns.ravel(), 3 * chord.indptr), shape=shape)
 
-    def _geometric(self, definite: bool) -> csr_array:
+    def _geometric(self, pull: FloatArray, definite: bool) -> csr_array:
         """Stiffness (n, n) of the stress at hand; chords and arcs of edges pull like strings."""
         edges, (chord, arc) = self._edges, self._split
-        stress = self._stress()
-        if definite:
-            kernels.clamp(stress)
-        share = self._area[:, None] * np.einsum("tck,tc->tk", self._natural, stress)
-        pull = np.bincount(edges.of_face.ravel(), share.ravel(), minlength=len(edges.ends))
         bend = edges.length**2 / 12.0 * (np.maximum(pull, 0.0) if definite else pull)
         strings = chord.T @ chord.multiply(pull[:, None])
         return csr_array(strings + arc.T @ arc.multiply(bend[:, None]))

@@ -10,7 +10,6 @@ from seatlook.model import FloatArray
 from seatlook.solver.explicit import DynamicRelaxation, Explicit
 from seatlook.solver.factor import Preconditioner
 from seatlook.solver.lbfgs import Descent, Lbfgs, Potential
-from seatlook.solver.projected import ProjectedNewton
 
 Method = Literal["lbfgs", "newton"] | Explicit
 MethodName = Literal["lbfgs", "newton", "explicit"]
@@ -59,6 +58,4 @@ def minimiser(method: Method, shape: tuple[int, int], mass: FloatArray | None = 
     """Return what minimises over unknowns of ``shape``; ``mass`` is real, of the same shape."""
     if isinstance(method, Explicit):
         return DynamicRelaxation(shape, method, mass)
-    if method == "lbfgs":
-        return Lbfgs(shape)
-    return ProjectedNewton(shape)
+    return Lbfgs(shape)

@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csc_array, diags_array
 
-from seatlook.errors import InputError, SolverError
+from seatlook.errors import SolverError
 from seatlook.mesh import vertex_normals
 from seatlook.model import Cover, FloatArray, Solution
 from seatlook.solver.contact import settled_rows
 from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.energy import Energy
 from seatlook.solver.explicit import Explicit, Integrator
-from seatlook.solver.factor import Factor, Preconditioner, SplitFactor
+from seatlook.solver.factor import Factor, Preconditioner, Renewed, SplitFactor
 from seatlook.solver.foundation import Foundation
 from seatlook.solver.inertia import Gravity, Inertia
 from seatlook.solver.kernels.lbfgs import largest_row
 from seatlook.solver.lbfgs import Potential
 from seatlook.solver.method import Method, minimiser
+from seatlook.solver.nearest import NearestHessian
 from seatlook.solver.newton import factorise, softest
 from seatlook.solver.stages import Step
 from seatlook.solver.state import OfPositions, StatePotential, masses
 from seatlook.solver.ties import Ties
+from seatlook.solver.transfer import transfer
 
 _KEPT_VELOCITY = 0.5  # share of the velocity that a step hands to the next
 _STEP_TOLERANCE = 0.02  # out-of-balance force over mean elastic force that ends a time step
@@ -111,17 +114,19 @@ class Process:
         self.method = method
         self._minimiser = minimiser(method, self.state.shape)
         self._factor: Preconditioner | None = None
+        self._nearest: NearestHessian | None = None
+        if method == "newton":
+            self._nearest = NearestHessian(self.sheet, cover.positions, self.ties.pattern())
         self._integrator: Integrator | None = None
         self._taut, self._evaluations, self._fresh = _TAUT, 0, True
         self._work, self._start = np.zeros_like(self.state), np.zeros_like(self.x)
 
     def resume(self, start: Solution) -> None:
-        """Take over the state of an earlier solution of the same mesh."""
-        if not np.array_equal(start.cover.faces, self.cover.faces):
-            raise InputError.single(
-                "start", got="a solution on another mesh", expected="one of this cover's mesh"
-            )
+        """Take over the state of an earlier solution, or the shape of one on another mesh."""
         self._fresh = False
+        if not np.array_equal(start.cover.faces, self.cover.faces):
+            np.copyto(self.x, transfer(start.cover, start.positions, self.cover))
+            return
         np.copyto(self.x, start.positions)
         np.copyto(self.v, start.velocities)
         for tie in self.ties.ties:
@@ -273,9 +278,21 @@ class Process:
 
     def _preconditioner(self, sheet: Callable[[], Preconditioner]) -> Preconditioner | None:
         """Matrix for a method that wants one, of the positions and what lies below."""
+        if self._nearest is not None:
+            return Renewed(partial(self._projected, self._nearest))
         if self.method != "lbfgs":
             return None
         return sheet() if self.foundation is None else self.foundation.extend(sheet())
+
+    def _projected(self, nearest: NearestHessian) -> Preconditioner:
+        """Factor of the projected Hessian at the state at hand."""
+        scalar = csc_array(self.ties.stiffness() + self.inertia.stiffness())
+        if self.foundation is None:
+            nearest.factor(self.x, scalar, np.zeros((len(self.x), 3, 3)))
+            return nearest
+        nearest.factor(self.x, scalar, self.foundation.blocks(self.state))
+        self.foundation.contact.update(self.state)
+        return self.foundation.extend(nearest)
 
     def _force_scale(self) -> float:
         """Mean over the vertices of the elastic force [N], or of the weight if that is more.

@@ -59,13 +59,17 @@ def solve(
     ----------
     strict : raise when the result is not converged
     progress : called after every step
-    start : earlier solution of the same mesh; the process goes on after its stage
+    start : earlier solution; the process goes on after its stage. From another mesh of the same
+        panels only the shape is taken over, by quadratics: a coarse solution at rest saves a fine
+        mesh the way there
     snapshot : called with the state at the end of every stage
     shape : called with stage, time [s] and positions (n, 3) [m] after every time step; the
         positions are those the solver goes on with, so copy what is kept
-    method : "lbfgs" with a prefactored matrix; "newton", which at rest counts the directions that
-        lead downhill and leaves an unstable balance; "explicit" central differences with the time
-        step their mesh allows, or ``Explicit(time_step=..., scale_mass=True)``
+    method : "lbfgs" with prefactored scalar matrices; "newton" with the projected Hessian of chords
+        and hinges factored every few iterations, for limp sheets that turn far, which at rest
+        counts the directions that lead downhill and leaves an unstable balance; "explicit" central
+        differences with the time step their mesh allows, or ``Explicit(time_step=...,
+        scale_mass=True)``
     dt : float [s]      time step; what lags is updated once in it
     iterations : int    most iterations in a time step
 

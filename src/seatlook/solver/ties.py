@@ -150,6 +150,11 @@ class Ties:
         w = self._weights
         return csc_array(w.T @ (diags_array(self.stiff) @ w))
 
+    def pattern(self) -> csc_array:
+        """Not zero where springs may couple two vertices, (n, n)."""
+        w = abs(self._weights)
+        return csc_array(w.T @ w)
+
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
         """Second derivative [N/m], constant and never indefinite."""
         del x, definite
