@@ -119,6 +119,18 @@ def test_card_under_a_panorama(card):
     assert dark < 50
 
 
+@pytest.mark.render
+def test_window_in_a_dark_room_leaves_no_patches(card):
+    """A source of 0.03 sr gives every point of a card the same, its irradiance over pi."""
+    sky = np.full((32, 64, 3), 10.0)
+    sky[8:11, 20:24] = 20_000.0
+    rig = Rig(name="window", lights=(), panorama=sky)
+    picture = card.render(GREY, rig=rig, camera=above(size=(40, 40), fov=6.0)).radiance[..., 1]
+    expected = 0.5 * irradiance_on(sky, UP)[1] / np.pi
+    assert picture.mean() == pytest.approx(expected, rel=0.02)
+    assert picture.std() < 0.005 * picture.mean()
+
+
 def test_bad_panoramas():
     with pytest.raises(InputError, match="one of them"):
         Rig(name="x", lights=(), ambient=1.0, panorama=np.ones((8, 16, 3)))

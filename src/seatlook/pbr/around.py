@@ -13,7 +13,7 @@ from seatlook.model import Camera, FloatArray, IntArray, Rig
 from seatlook.pbr.kernels import bvh, gloss, light, rays, shade
 from seatlook.pbr.kernels.light import Lights
 from seatlook.pbr.quality import Quality
-from seatlook.pbr.rig import pack_lights, sky_colour, sky_levels
+from seatlook.pbr.rig import pack_lights, sky_colour, sky_levels, sky_unhidden
 from seatlook.pbr.subdivision import boundary_edges
 from seatlook.pbr.surface import Surface
 
@@ -67,7 +67,9 @@ class Surroundings:
         seen, strata = self._half_space(level), level.strata or 8
         sky = (seen.hits == rays.OPEN).mean(axis=1)[:, None] * even
         if len(panorama):
-            rays.sky_seen(mesh.normals, seen.which, seen.hits, strata, panorama, sky)
+            key = ("sky", panorama.tobytes(), len(seen.which))
+            whole = self.kept(key, lambda: sky_unhidden(rig, mesh.normals[seen.which]))
+            rays.sky_seen(mesh.normals, seen.which, seen.hits, strata, panorama, whole, sky)
         diffuse[:k] = self._spread(seen.which, sky)
         # Of the sky below a seam, and where the foam is in sight, little is seen.
         diffuse[k:] = _HIDDEN_SKY * diffuse[: self.few].mean(axis=0)

@@ -61,6 +61,26 @@ def levels_of(panorama: FloatArray) -> FloatArray:
     return _levels(key)
 
 
+def cosine_mean(panorama: FloatArray, normals: FloatArray) -> FloatArray:
+    """Mean luminance (n, 3) of the half-spaces around unit normals (n, 3), weighted by cosine.
+
+    By blocks of the picture, each as the sum of its light as vectors: exact for all that do not
+    lie across the plane, and for an even picture.
+    """
+    small = shrunk(panorama)
+    rows, columns = small.shape[:2]
+    # The fourth channel is an even picture of luminance 1.
+    light = np.dstack([small, np.ones((rows, columns))]) * solid_angles(rows, columns)[..., None]
+    vectors = light[..., None] * directions(rows, columns)[:, :, None, :]
+    blocks = vectors.reshape(rows // 2, 2, columns // 2, 2, 4, 3).sum(axis=(1, 3)).reshape(-1, 4, 3)
+    out = np.empty((len(normals), 4))
+    for start in range(0, len(normals), 4096):
+        part = slice(start, start + 4096)
+        for k in range(4):
+            out[part, k] = np.maximum(normals[part] @ blocks[:, k].T, 0.0).sum(axis=1)
+    return np.asarray(out[:, :3] / out[:, 3:])
+
+
 @functools.lru_cache(maxsize=4)
 def _levels(key: tuple[tuple[int, int, int], bytes]) -> FloatArray:
     small = shrunk(np.frombuffer(key[1]).reshape(key[0]))

@@ -6,7 +6,7 @@ import numpy as np
 
 from seatlook.model import FloatArray, Light, Rig
 from seatlook.pbr.kernels.light import Lights
-from seatlook.pbr.panorama import irradiance_on, levels_of
+from seatlook.pbr.panorama import cosine_mean, irradiance_on, levels_of
 
 # Luminance of linear sRGB (ITU-R BT.709).
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -116,3 +116,10 @@ def sky_colour(rig: Rig) -> FloatArray:
 def sky_levels(rig: Rig) -> FloatArray:
     """Panorama of a rig as the kernels take it; no levels where the sky is even."""
     return np.zeros((0, 2, 4, 3)) if rig.panorama is None else levels_of(rig.panorama)
+
+
+def sky_unhidden(rig: Rig, normals: FloatArray) -> FloatArray:
+    """Mean luminance (n, 3) that planes with unit normals (n, 3) get of a rig's panorama."""
+    if rig.panorama is None:
+        return np.zeros((len(normals), 3))
+    return cosine_mean(rig.panorama, normals)

@@ -222,16 +222,26 @@ def face_met(bvh, o, d, faces, stack):
 
 
 @njit(cache=True)
-def sky_seen(normals, which, hits, strata, panorama, out):
-    """Mean luminance (m, 3) of a panorama's smoothest level over the open directions."""
+def sky_seen(normals, which, hits, strata, panorama, unhidden, out):
+    """Mean luminance (m, 3) of a panorama over the open directions.
+
+    What an unhidden plane gets (``unhidden`` (m, 3)) times the share that is open of what all
+    directions see, each blurred to what it stands for: a window in a dark room is hit by chance,
+    and few rays by themselves would leave patches of light and dark.
+    """
+    width = np.sqrt(1.0 / strata)
+    open_, every = np.empty(3), np.empty(3)
     for r in range(len(hits)):
         n = row(normals, which[r])
-        out[r] = 0.0
+        open_[:], every[:] = 0.0, 1e-30
         for q in range(strata * strata):
-            if hits[r, q] == OPEN:
-                seen = panorama_towards(panorama, 0.0, direction(n, which[r], q, strata))
-                for k in range(3):
-                    out[r, k] += seen[k] / (strata * strata)
+            seen = panorama_towards(panorama, width, direction(n, which[r], q, strata))
+            for k in range(3):
+                every[k] += seen[k]
+                if hits[r, q] == OPEN:
+                    open_[k] += seen[k]
+        for k in range(3):
+            out[r, k] = unhidden[r, k] * open_[k] / every[k]
 
 
 @njit(cache=True)
