@@ -7,8 +7,8 @@ import pytest
 
 from pbr_scenes import above, flat, sheet
 from seatlook.errors import InputError
-from seatlook.pbr import render_map
 from seatlook.model.colour import srgb_encode
+from seatlook.pbr import render_map
 from seatlook.pbr.maps import COLORMAPS, colour_table
 
 pytestmark = pytest.mark.render

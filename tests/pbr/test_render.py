@@ -233,6 +233,8 @@ def test_saving_a_picture(card, tmp_path):
     image.save(tmp_path / "a.npy")
     assert (tmp_path / "a.png").read_bytes() == image.to_png() == image._repr_png_()
     assert (np.load(tmp_path / "a.npy") == image.radiance).all()
-    with pytest.raises(InputError, match=r"image file: got a\.jpg, expected a \.png, \.npy or \.exr"):
+    with pytest.raises(
+        InputError, match=r"image file: got a\.jpg, expected a \.png, \.npy or \.exr"
+    ):
         image.save(tmp_path / "a.jpg")
     assert isinstance(image, Image)
