@@ -8,6 +8,7 @@ import pytest
 import scenes
 from seatlook.assembly import assemble
 from seatlook.solver import solve
+from seatlook.solver.crossing import crossing_pairs, visible_crossings
 from seatlook.solver.hooks import overpulled, ring_pulls
 
 DEEP = 0.006
@@ -88,3 +89,9 @@ def test_rings_above_their_limit_are_named(pulled):
     weak = [dataclasses.replace(a, limit=1e3) for a in pulled.cover.anchors]
     cover = dataclasses.replace(pulled.cover, anchors=tuple(weak))
     assert overpulled(dataclasses.replace(pulled, cover=cover)) == ()
+
+
+def test_figures_count_what_passes_through_itself(pulled):
+    pairs = crossing_pairs(pulled.cover, pulled.positions)
+    assert pulled.figures["intersecting_pairs"] == visible_crossings(pulled.cover, pairs) == 0
+    assert "hem_crossing_pairs" not in pulled.figures
