@@ -23,7 +23,7 @@ from seatlook.solver.kernels.lbfgs import largest_row
 from seatlook.solver.lbfgs import Potential
 from seatlook.solver.method import Method, minimiser
 from seatlook.solver.nearest import NearestHessian
-from seatlook.solver.newton import factorise, softest
+from seatlook.solver.stability import downhill
 from seatlook.solver.stages import Step
 from seatlook.solver.state import OfPositions, StatePotential, masses
 from seatlook.solver.ties import Ties
@@ -193,20 +193,21 @@ class Process:
             iterations=iterations,
         )
 
-    def downhill(self, kick: float = 0.0) -> int:
-        """Count the directions in which the static potential falls; with a kick [m], take one.
+    def downhill(self, kick: float = 0.0) -> bool:
+        """Whether the static potential curves downwards somewhere; with a kick [m], go there.
 
         What lags (friction, multipliers) is held.
         """
-        hessian = self._static.hessian(self.state, definite=False)
-        factor, count = factorise(hessian)
-        if count and kick > 0.0:
-            mode = softest(hessian, factor)[1].reshape(self.state.shape)
-            mode *= kick / largest_row(mode)
-            sides = [self.state + mode, self.state - mode]
-            values = [self._static.value(side, self._work) for side in sides]
-            np.copyto(self.state, sides[int(np.argmin(values))])
-        return count
+        if self._nearest is None:
+            return False
+        mode = downhill(self._static, self.state, self._projected(self._nearest))
+        if mode is None:
+            return False
+        mode *= kick / largest_row(mode)
+        sides = [self.state + mode, self.state - mode]
+        values = [self._static.value(side, self._work) for side in sides]
+        np.copyto(self.state, sides[int(np.argmin(values))])
+        return True
 
     def resultants(self) -> dict[str, FloatArray]:
         """Sum of the forces on the cover by cause, each (3,) [N]."""

@@ -1,0 +1,52 @@
+import numpy as np
+import pytest
+from scipy.sparse import csc_array, diags_array
+
+from covers import cover, sheet
+from seatlook.solver.factor import Factor
+from seatlook.solver.lbfgs import Potential
+from seatlook.solver.process import Process
+from seatlook.solver.stability import downhill
+
+
+class Quadratic:
+    def __init__(self, matrix):
+        self.matrix = matrix
+
+    def value(self, x, gradient):
+        pull = self.matrix @ x
+        gradient += pull
+        return 0.5 * float((x * pull).sum())
+
+
+def chain(n, lift):
+    """Laplacian of a chain, its lowest eigenvalue moved to ``lift``."""
+    matrix = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    return matrix + (lift - np.linalg.eigvalsh(matrix)[0]) * np.eye(n)
+
+
+@pytest.mark.parametrize("lift", [1e-2, 1e-3])
+def test_positive_matrices_have_no_way_down(lift):
+    matrix = chain(60, lift)
+    guess = Factor(csc_array(diags_array(np.full(60, 2.0))))
+    assert downhill(Potential([Quadratic(matrix)]), np.zeros((60, 3)), guess) is None
+
+
+@pytest.mark.parametrize("lift", [-1e-1, -1e-2, -3e-3])
+def test_one_negative_eigenvalue_is_found(lift):
+    matrix = chain(60, lift)
+    guess = Factor(csc_array(diags_array(np.full(60, 2.0))))
+    found = downhill(Potential([Quadratic(matrix)]), np.zeros((60, 3)), guess)
+    assert found is not None
+    assert (found * (matrix @ found)).sum() < 0.0
+
+
+def test_a_flat_cover_past_its_buckling_load_is_pushed_out_of_its_plane():
+    process = Process(cover([sheet(0.2, 0.06, 0.02)], h=0.02), dt=0.02, iterations=1,
+                      method="newton")  # fmt: skip
+    assert not process.downhill()
+    process.x[:, 0] *= 0.98
+    flat = process._static.value(process.state, np.zeros_like(process.state))
+    assert process.downhill(1e-4)
+    assert 5e-5 < np.abs(process.x[:, 2]).max() <= 1e-4
+    assert process._static.value(process.state, np.zeros_like(process.state)) < flat
