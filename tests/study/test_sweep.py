@@ -124,7 +124,7 @@ def test_killed_at_any_moment_and_run_again_nothing_is_lost_or_doubled(four, tmp
 
 @pytest.mark.parametrize("group", [True, False], ids=["keyboard", "one process"])
 def test_an_interrupted_sweep_ends_at_once_and_says_how_to_go_on(four, tmp_path, group):
-    cells, expected = four
+    _, expected = four
     seeds(tmp_path, 40)
     process = start_sweep(tmp_path, "--workers", "2")
     folder = tmp_path / "out" / "cells"
@@ -141,7 +141,8 @@ def test_an_interrupted_sweep_ends_at_once_and_says_how_to_go_on(four, tmp_path,
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in workers))
     assert 0 < len(list(folder.glob("*.json"))) < 30
     assert not list(folder.glob("*.failed.json"))
-    assert contents(folder)[f"{cells[0].name}.json"] == expected[f"{cells[0].name}.json"]
+    done = contents(folder)
+    assert all(done[name] == body for name, body in expected.items() if name in done)
 
 
 def test_a_cluster_gives_the_same_bytes_though_a_worker_is_killed(four, tmp_path):

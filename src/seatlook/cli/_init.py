@@ -86,15 +86,7 @@ def init(
     force
         Write over a scene that is in the folder already.
     """
-    if pattern.suffix.lower() != ".dxf" and foam.suffix.lower() == ".dxf":
-        raise InputError.single(
-            "files", got=f"{pattern.name} {foam.name}", expected="first the pattern, then the foam"
-        )
-    there = [name for name in _FILES if (out / name).exists()]
-    if there and not force:
-        raise InputError.single(
-            "--out", got=f"a folder with {', '.join(there)}", expected="a new one, or --force"
-        )
+    _check_files(pattern, foam, out, force=force)
     from seatlook import io
     from seatlook.solver.contact import foam_wavelength
     from seatlook.study.unfolding import lay_out
@@ -129,6 +121,19 @@ def init(
 
     write_text(out / "scene.toml", text + "\n")
     _tell(proposal, hooks, out, json=json)
+
+
+def _check_files(pattern: Path, foam: Path, out: Path, *, force: bool) -> None:
+    """Refuse files in the wrong order, and a folder with a scene in it."""
+    if pattern.suffix.lower() != ".dxf" and foam.suffix.lower() == ".dxf":
+        raise InputError.single(
+            "files", got=f"{pattern.name} {foam.name}", expected="first the pattern, then the foam"
+        )
+    there = [name for name in _FILES if (out / name).exists()]
+    if there and not force:
+        raise InputError.single(
+            "--out", got=f"a folder with {', '.join(there)}", expected="a new one, or --force"
+        )
 
 
 def _sewn(
