@@ -15,7 +15,7 @@ class Unloading:
     """History of every triangle's strain along warp and weft, and what its tension lacks by it.
 
     The unloading curve, which starts where tension is gone, is shifted to meet the loading curve at
-    the peak of the strain, as in LS-DYNA's MAT_FABRIC, FORM 14; reloading goes up the same way.
+    the peak of the strain; reloading goes up the same way.
     Peaks are raised by ``wear`` between steps only, so within a step there is one potential, C1 at
     the peak; where a peak is raised neither energy nor forces change.
 
