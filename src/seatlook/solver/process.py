@@ -119,6 +119,9 @@ class Process:
             self._nearest = NearestHessian(self.sheet, cover.positions, self.ties.pattern())
         self._integrator: Integrator | None = None
         self._taut, self._evaluations, self._fresh = _TAUT, 0, True
+        # Asked for several times between two minimisations, at one and the same shape.
+        self._seen, self._seen_energy = np.full_like(self.x, np.nan), 0.0
+        self._sheet_force = np.zeros_like(self.state)
         self._work, self._start = np.zeros_like(self.state), np.zeros_like(self.x)
 
     def resume(self, start: Solution) -> None:
@@ -174,11 +177,11 @@ class Process:
         """Measure the state with nothing lagging: the balance is that of forces at ``x``."""
         self._lag()
         scale = self._force_scale()
-        elastic = self._elastic.value(self.state, self._work)
+        elastic = self._sheet_energy()
         foam = 0.0
         if self.foundation is not None:
             foam = self.foundation.energy(self.state, self._work)
-        energy = self._static.value(self.state, self._work)
+        energy = self._static_value()
         if not np.isfinite(energy):
             raise SolverError(f"energy is {energy} at {self.time:.3g} s: the cover has blown up")
         speed2 = np.einsum("ij,ij->i", self.v, self.v)
@@ -224,7 +227,7 @@ class Process:
     def _descend(self, factor: Preconditioner | None, limit: float, iterations: int) -> Record:
         """Minimise the moving potential until no vertex is out of balance by ``limit`` [N]."""
         np.copyto(self._start, self.x)
-        placed = self._elastic.value(self.state, self._work) if self._fresh else 0.0
+        placed = self._sheet_energy() if self._fresh else 0.0
         self._fresh = False
         before = self._outside()
         descent = self._minimiser.minimise(
@@ -253,7 +256,7 @@ class Process:
             friction = self.foundation.friction.value(self.state, self._work)
         ties = self.ties.value(self.x, self._work[:n])
         weight = self.gravity.value(self.x, self._work[:n])
-        return ties, weight, friction, self._static.value(self.state, self._work)
+        return ties, weight, friction, self._static_value()
 
     def _integrate(self, options: Explicit, *, refactor: bool) -> Record:
         """Go through a time step by central differences."""
@@ -300,10 +303,24 @@ class Process:
 
         A sheet that lies level has weight but no elastic forces.
         """
-        self._work.fill(0.0)
-        self._elastic.value(self.state, self._work)
-        elastic = np.sqrt(np.einsum("ij,ij->i", self._work, self._work)).sum() / len(self.x)
+        self._sheet_energy()
+        force = self._sheet_force
+        elastic = np.sqrt(np.einsum("ij,ij->i", force, force)).sum() / len(self.x)
         return max(float(elastic), float(self.gravity.weight.mean()))
+
+    def _sheet_energy(self) -> float:
+        """Elastic energy [J] of the sheet, gradient in ``_sheet_force``; once for each shape."""
+        if not np.array_equal(self._seen, self.x):
+            self._seen_energy = self._elastic.value(self.state, self._sheet_force)
+            np.copyto(self._seen, self.x)
+        return self._seen_energy
+
+    def _static_value(self) -> float:
+        """Potential [J] of all but inertia, its gradient in ``_work``."""
+        outer = self._outer.value(self.state, self._work)
+        energy = self._sheet_energy() + outer
+        self._work += self._sheet_force
+        return energy
 
     def _matrix(self) -> csc_array:
         """Scalar stiffness (n, n) [N/m] of everything for the factor."""
