@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from scipy.sparse import csc_array, diags_array
 
 from seatlook.errors import SolverError
 from seatlook.mesh import vertex_normals
-from seatlook.model import Cover, FloatArray, Solution
+from seatlook.model import Cover, Fabric, FloatArray, Solution
 from seatlook.solver.contact import settled_rows
 from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.energy import Energy
@@ -85,13 +85,8 @@ class Process:
         self.sheet = ElasticSheet(cover.rest, cover.faces, cover.panel, fabrics, hem=cover.hem)
         self.panel = np.zeros(len(cover.rest), dtype=np.int64)
         self.panel[cover.faces] = cover.panel[:, None]
-        tension = np.array([np.sqrt(f.warp.stiffness[0] * f.weft.stiffness[0]) for f in fabrics])
-        self._tension = tension
-        softness = max(
-            max(f.bending_warp, f.bending_weft) / (k * cover.element_size**2)
-            for f, k in zip(fabrics, tension, strict=True)
-        )
-        self._bending_in_factor = softness > _STIFF_BENDING
+        self._tension = tension = _tension(fabrics)
+        self._bending_in_factor = _stiffness_ratio(fabrics, cover.element_size) > _STIFF_BENDING
         self._mass: FloatArray = np.array(self.sheet.mass, dtype=np.float64)
         self.gravity = Gravity(self._mass)
         self.inertia = Inertia(self._mass, dt)
@@ -344,3 +339,14 @@ class Process:
             diagonal += self.foundation.contact.stiffness().diagonal()
         across = self.sheet.across() + self._taut * self.sheet.stiffness() + diags_array(diagonal)
         return SplitFactor(self._matrix(), csc_array(across), normal)
+
+
+def _tension(fabrics: Sequence[Fabric]) -> FloatArray:
+    """Membrane stiffness [N/m] of every fabric, the mean of warp and weft."""
+    return np.array([np.sqrt(f.warp.stiffness[0] * f.weft.stiffness[0]) for f in fabrics])
+
+
+def _stiffness_ratio(fabrics: Sequence[Fabric], h: float) -> float:
+    """Largest bending stiffness of the fabrics over that of their membrane, B / (E h^2)."""
+    bending = np.array([max(f.bending_warp, f.bending_weft) for f in fabrics])
+    return float((bending / (_tension(fabrics) * h**2)).max())
