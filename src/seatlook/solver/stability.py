@@ -16,11 +16,13 @@ _DOWN = -1e-6  # of what the preconditioner says of the direction; above it is r
 
 
 def downhill(potential: Potential, x: FloatArray, factor: Preconditioner) -> FloatArray | None:
-    """Return a direction in which the potential curves downwards at ``x``, None if there is none.
+    """Return a direction in which the potential curves downwards at ``x``, None if none is found.
 
     Conjugate gradients on the Hessian, whose products are differences of the gradient, from a
     random right-hand side: before they can end on an indefinite matrix they come across such a
-    direction (Nocedal and Wright 2006, Numerical Optimization, section 7.1).
+    direction (Nocedal and Wright 2006, Numerical Optimization, section 7.1). They stop after 200
+    products; directions that hardly lead down are found last and may be left out then, so this is
+    a search and no proof.
 
     Parameters
     ----------
