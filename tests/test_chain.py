@@ -52,8 +52,8 @@ def cylinder_foam() -> model.Foam:
 LIMP = {"bending_warp": 1e-4, "bending_weft": 8e-5, "bending_twist": 4e-5}
 
 
-# A seam is a hinge: a stiff cover without tension stands up at it like a roof (0.7 to 1 mm here), so
-# the stiff one is cut small, as covers are. With a hem it does not stand up, but the layer below
+# A seam is a hinge: a stiff cover without tension stands up at it like a roof (0.7 to 1 mm here),
+# so the stiff one is cut small, as covers are. With a hem it does not stand up, but the layer below
 # lifts the seam: 0.83 mm uncut, pressed in by 0.66 mm cut 0.5 % small.
 @pytest.fixture(scope="module", params=[(LIMP, 0.0), ({}, 0.0025)], ids=["limp", "stiff, taut"])
 def sewn(request):

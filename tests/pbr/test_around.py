@@ -55,11 +55,11 @@ def test_a_wall_in_the_sun_looks_the_same_in_the_floor():
 
 
 @pytest.mark.parametrize("look", [Appearance(albedo=np.ones(3), roughness=0.5), POLISHED])
-def test_a_white_trough_in_a_furnace_loses_no_more_than_later_bounces(look):
-    trough = Studio(sheet(lambda x, y: 4 * x**2, steps=40))
+def test_a_white_gutter_in_a_furnace_loses_no_more_than_later_bounces(look):
+    gutter = Studio(sheet(lambda x, y: 4 * x**2, steps=40))
     camera = above(size=(40, 40), fov=8)
     one, three = (
-        trough.render(look, rig=SKY, camera=camera, quality=q).radiance[..., 1] / 1000
+        gutter.render(look, rig=SKY, camera=camera, quality=q).radiance[..., 1] / 1000
         for q in ("T3", "T4")
     )
     assert one.max() <= 1.005
