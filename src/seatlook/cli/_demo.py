@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -12,7 +13,7 @@ from seatlook.cli._run import Out, Resume, Scored, Seed, evaluate_scene, load
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.design import Flattened
+    from seatlook.design import DesignSurface, Flattened
 
 Shares = Annotated[tuple[str, ...], Parameter(negative=())]
 
@@ -76,10 +77,14 @@ def demo(
 
 
 def flatten(
-    surface: Annotated[Path, Parameter(help="Design surface: OBJ, one group per panel.")],
+    surface: Annotated[
+        Path,
+        Parameter(help="Design surface: OBJ, one group per panel unless --seam-lines is given."),
+    ],
     /,
     *,
     out: Out,
+    seam_lines: Path | None = None,
     unit: Literal["mm", "m"] = "mm",
     ease: Shares = (),
     starve: Shares = (),
@@ -91,13 +96,18 @@ def flatten(
     """Cut a design surface along its panels' borders and flatten them into a pattern.
 
     Writes pattern.dxf (AAMA), seams.toml and placement.toml, whose tables go into a scene, and
-    pictures and seam-lengths.csv; prints the strain that each panel takes when it is laid back onto
-    the surface.
+    pictures and seam-lengths.csv; with --seam-lines also panels.obj, the surface in a group per
+    panel. Prints the strain that each panel takes when it is laid back onto the surface.
 
     Example: seatlook flatten cushion.obj --out pattern --ease INSERT-BOLSTER_L=2%
 
+    Example: seatlook flatten form.obj --seam-lines lines.toml --out pattern
+
     Parameters
     ----------
+    seam_lines
+        Curves file, [curve.NAME] points_mm, of lines within 2 mm of the surface, along which it is
+        cut into panels. Each ends on the border or on another; its seam takes its name.
     unit
         Unit of the surface file.
     ease
@@ -115,7 +125,7 @@ def flatten(
     from seatlook import design, files, io
     from seatlook.study.strain_map import write_strain_maps
 
-    form = design.DesignSurface(**io.read_surface(surface, unit=unit)._asdict())
+    form = _form(surface, unit, seam_lines)
     fabric = None if material is None else io.read_material(material).fabric
     flat = design.flatten(
         form,
@@ -125,6 +135,8 @@ def flatten(
         starve=_shares("--starve", starve),
         tension=tension_percent / 100,
     )
+    if seam_lines is not None:
+        _write_panels(form, out / "panels.obj")
     _write_pattern(flat, out)
     files.write_text(out / "placement.toml", _placement(flat) + "\n")
     _write_seam_lengths(flat, out / "seam-lengths.csv")
@@ -135,6 +147,24 @@ def flatten(
         heads.append("energy_mj")
         rows = [[*r, 1e3 * (p.energy or 0.0)] for r, p in zip(rows, flat.panels, strict=True)]
     table(heads, rows, json=json)
+
+
+def _form(path: Path, unit: Literal["mm", "m"], seam_lines: Path | None) -> DesignSurface:
+    """Read a design surface and cut it along the lines of a file, if there is one."""
+    from seatlook import design, io
+
+    ungrouped = None if seam_lines is None else "PANEL"
+    form = design.DesignSurface(**io.read_surface(path, unit=unit, ungrouped=ungrouped)._asdict())
+    if seam_lines is None:
+        return form
+    lines = io.read_curves(seam_lines)
+    try:
+        return design.cut_along(form, lines)
+    except InputError as error:
+        raise InputError(
+            problem if problem.file else replace(problem, file=seam_lines)
+            for problem in error.problems
+        ) from None
 
 
 def write_demo(
@@ -163,10 +193,7 @@ def write_demo(
         surface = design.demo_design(element_size=surface_size)
         flat = design.flatten(surface, tension=tension, ease=ease, starve=starve)
         foam = design.demo_foam_mesh(element_size=surface_size, cover_thickness=thickness)
-    io.write_surface(
-        io.GroupedMesh(surface.vertices, surface.faces, surface.panel, surface.panel_names),
-        out / "design.obj",
-    )
+    _write_panels(surface, out / "design.obj")
     io.write_obj(foam.vertices, foam.faces, out / "foam.obj")
     io.write_curves(foam.curves, out / "wires.toml")
     _write_pattern(flat, out)
@@ -181,6 +208,12 @@ def write_demo(
                  *(f"starve {k} {v:.1%}" for k, v in starve.items())],
     )  # fmt: skip
     files.write_text(out / "scene.toml", scene + "\n")
+
+
+def _write_panels(form: DesignSurface, path: Path) -> None:
+    from seatlook import io
+
+    io.write_surface(io.GroupedMesh(form.vertices, form.faces, form.panel, form.panel_names), path)
 
 
 def _write_pattern(flat: Flattened, out: Path) -> None:

@@ -126,7 +126,7 @@ def flatten(
     """
     patches = surface.patches()
     borders = sides(patches)
-    seams = pair(borders)
+    seams = pair(borders, surface.seam_lines)
     first = {seam.name: seam.a for seam in seams}
     ease = {first.get(name, name): value for name, value in ease.items()}
     _check("ease", ease, [s.name for s in borders if s.neighbour != FREE])
@@ -177,7 +177,7 @@ def _report(
         fabric = fabrics.get(patch.name)
         stored = None if fabric is None else fabric_energy(by_grain[mine], fabric)
         panels.append(_panel_strain(patch, strain[mine], stored))
-    pattern = sewing_pattern(patches, borders, flat, allowance)
+    pattern = sewing_pattern(patches, borders, flat, allowance, seam_lines=surface.seam_lines)
     design = {s.name: float(mesh.arc_length(surface.vertices[s.vertices])[-1]) for s in borders}
     return Flattened(
         pattern=pattern,

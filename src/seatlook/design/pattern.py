@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from types import MappingProxyType
 
@@ -67,9 +68,11 @@ def sewing_pattern(
     borders: tuple[Side, ...],
     flat: Mapping[str, FloatArray],
     allowance: float,
+    *,
+    seam_lines: Mapping[tuple[int, int], str] = MappingProxyType({}),
 ) -> Pattern:
     """Return the pattern of flat patches (n, 2) whose grain runs along the second axis."""
-    seams = pair(borders)
+    seams = pair(borders, seam_lines)
     partner = {seam.a: seam.b[0] for seam in seams} | {seam.b[0]: seam.a for seam in seams}
     panels = []
     for patch in patches:
@@ -96,16 +99,33 @@ def sewing_pattern(
     )
 
 
-def pair(borders: tuple[Side, ...]) -> tuple[Seam, ...]:
-    """Pair the sides that run along the same vertices; the panel that comes first is side a."""
+def pair(
+    borders: tuple[Side, ...], seam_lines: Mapping[tuple[int, int], str] = MappingProxyType({})
+) -> tuple[Seam, ...]:
+    """Pair the sides that run along the same vertices; the panel that comes first is side a.
+
+    A seam is called after the line that most of its edges lie on, the second one of a line
+    ``LINE_2``; without a line after its sides.
+    """
     order = list(dict.fromkeys(side.panel for side in borders))
     by_ends = {(s.panel, int(s.vertices[0]), int(s.vertices[-1])): s.name for s in borders}
-    seams = []
+    seams: list[Seam] = []
+    again: dict[str, int] = {}
     for side in borders:
         if side.neighbour != FREE and order.index(side.panel) < order.index(side.neighbour):
             other = by_ends[side.neighbour, int(side.vertices[-1]), int(side.vertices[0])]
-            seams.append(Seam(name=side.name.replace(".", "-"), a=side.name, b=(other,)))
+            name = _line(side, seam_lines)
+            again[name] = again.get(name, 0) + 1
+            name += f"_{again[name]}" if again[name] > 1 else ""
+            seams.append(Seam(name=name, a=side.name, b=(other,)))
     return tuple(seams)
+
+
+def _line(side: Side, seam_lines: Mapping[tuple[int, int], str]) -> str:
+    """Return the name of the line that a side lies on, or one made of its own."""
+    ends = np.sort(np.column_stack([side.vertices[:-1], side.vertices[1:]]), axis=1)
+    lines = Counter(seam_lines[a, b] for a, b in ends.tolist() if (a, b) in seam_lines)
+    return lines.most_common(1)[0][0] if lines else side.name.replace(".", "-")
 
 
 def _corners(outline: FloatArray, starts: list[int]) -> IntArray:

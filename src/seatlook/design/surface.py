@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -23,12 +24,14 @@ class DesignSurface:
     faces : (m, 3) int64           normals outward, the visible side
     panel : (m,) int64             index into ``panel_names``
     panel_names : names of the panels; two panels share the vertices of the seam between them
+    seam_lines : edge, smaller vertex first -> name of the line it was cut along, if any
     """
 
     vertices: FloatArray
     faces: IntArray
     panel: IntArray
     panel_names: tuple[str, ...]
+    seam_lines: Mapping[tuple[int, int], str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if (

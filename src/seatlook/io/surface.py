@@ -36,11 +36,12 @@ class GroupedMesh(NamedTuple):
     panel_names: tuple[str, ...]
 
 
-def read_surface(path: Path, *, unit: Unit) -> GroupedMesh:
+def read_surface(path: Path, *, unit: Unit, ungrouped: str | None = None) -> GroupedMesh:
     """Read a design surface: an OBJ file in which ``g NAME`` names the panel of the next faces.
 
     Polygons are cut into fans. The surface need not be closed. Panels that were written with
-    corners of their own share them again where they agree within 1 um.
+    corners of their own share them again where they agree within 1 um. Faces before the first group
+    belong to the panel ``ungrouped``; without such a name they are refused.
 
     Raises
     ------
@@ -50,6 +51,8 @@ def read_surface(path: Path, *, unit: Unit) -> GroupedMesh:
     """
     lines = read_file(path).decode(errors="replace").splitlines()
     reader = _ObjReader(path)
+    if ungrouped is not None:
+        reader.open_group(ungrouped)
     for number, line in enumerate(lines, start=1):
         reader.read(number, line.split("#", 1)[0].split())
     mesh = reader.result(METRES[unit])
@@ -77,7 +80,7 @@ class _ObjReader:
             if kind == "v":
                 self._vertex(values)
             elif kind == "g":
-                self._open_group(" ".join(values))
+                self.open_group(" ".join(values))
             else:
                 self._face(values)
         except ValueError as error:
@@ -98,7 +101,7 @@ class _ObjReader:
             raise ValueError(expected)
         self.vertices[-1] = point
 
-    def _open_group(self, name: str) -> None:
+    def open_group(self, name: str) -> None:
         if name not in self.names:
             self.names.append(name)
         self.group = self.names.index(name)
