@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from seatlook.errors import InputError, did_you_mean
 
@@ -38,6 +38,8 @@ TIERS: dict[str, Quality] = {
 QUALITIES: dict[str, Quality] = {
     "draft": TIERS["T1"],
     "standard": TIERS["T3"],
+    # A score compares two pictures: one ray of 64 that meets a highlight in only one of them shows.
+    "score": replace(TIERS["T3"], strata=12),
     "high": TIERS["T4"],
     **TIERS,
 }

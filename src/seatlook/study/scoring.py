@@ -57,7 +57,7 @@ def score_scene(
     camera: Camera | None = None,
     mode: Mode = "view-ray",
     cutoff: float = CUTOFF,
-    quality: str = "standard",
+    quality: str = "score",
     progress: Progress | None = None,
 ) -> SceneScore:
     """Score every texture of a scene under every rig, from one camera.

@@ -77,7 +77,7 @@ class View:
         mode: Mode = "view-ray",
         cutoff: float = CUTOFF,
         zones: tuple[str, ...] | None = None,
-        quality: str = "standard",
+        quality: str = "score",
     ) -> None:
         """Make the reference.
 
