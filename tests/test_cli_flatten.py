@@ -1,6 +1,7 @@
 """A user's own surface and seam lines on the command line."""
 
 import csv
+import json
 import subprocess
 import sys
 
@@ -9,6 +10,7 @@ import pytest
 
 from meshes import rectangle
 from seatlook import io
+from seatlook.cli import run
 
 LINES = """
 [curve.welt]
@@ -61,3 +63,31 @@ def test_a_line_off_the_surface_is_refused_with_file_and_key(form):
         in " ".join(done.stderr.split())
     )
     assert not (form / "out/pattern.dxf").exists()
+
+
+def test_flatten_for_a_fabric_leaves_pictures_and_seam_lengths(demo_scene, tmp_path, capsys):
+    surface = str(demo_scene.with_name("design.obj"))
+    words = ["flatten", surface, "--out", str(tmp_path), "--json"]
+    assert run([*words, "--material", "leather-laminate"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert all(row["energy_mj"] > 0 for row in rows)
+    assert len(list(tmp_path.glob("strain-*.png"))) == len(rows) == 7
+    with (tmp_path / "seam-lengths.csv").open() as file:
+        seams = list(csv.DictReader(file))
+    assert len(seams) == 14
+    assert max(abs(float(seam["difference_mm"])) for seam in seams) < 0.05
+    assert run([*words, "--material", "lether"]) == 2
+    assert "lether" in capsys.readouterr().err
+
+
+def test_flatten_writes_a_pattern_and_its_strains(demo_scene, tmp_path, capsys):
+    surface = demo_scene.with_name("design.obj")
+    assert run(["flatten", str(surface), "--out", str(tmp_path), "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert {row["panel"] for row in rows} >= {"INSERT", "BOLSTER_L", "REAR"}
+    assert all(
+        row["strain_smallest"] <= row["strain_mean"] <= row["strain_largest"] for row in rows
+    )
+    pattern = io.read_pattern(tmp_path / "pattern.dxf", tmp_path / "seams.toml")
+    assert len(pattern.seams) == 14
+    assert "[placement.INSERT]" in (tmp_path / "placement.toml").read_text()
