@@ -1,4 +1,4 @@
-"""A small solved cover that uses every field of a result."""
+"""Samples for readers: a small solved cover that uses every field of a result, a closed box."""
 
 from types import MappingProxyType
 
@@ -83,3 +83,11 @@ def wrinkles():
     return WrinkleMap(
         c=c, w1=c / 20, w2=w2, r_stretch=r, w_stretch=w2 * r, w_compression=w2 * (1 - r)
     )
+
+
+def box(width=0.5, depth=0.5, height=0.1):
+    """Corners [m] and faces of a closed box that stands on z = 0."""
+    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (0, 1)])
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = [f for a, b, c, d in quads for f in ((a, b, c), (a, c, d))]
+    return corners * [width, depth, height], np.array(faces)

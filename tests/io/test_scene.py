@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from io_samples import box
 from seatlook.io.curves import write_curves
 from seatlook.io.scene import load_scene
 from seatlook.io.surface import write_obj
@@ -14,13 +15,6 @@ from seatlook.wrinkle import ZoneRow
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "scene.md").read_text(), re.DOTALL)[0]
-
-
-def box(width=0.5, depth=0.5, height=0.1):
-    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (0, 1)])
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = [f for a, b, c, d in quads for f in ((a, b, c), (a, c, d))]
-    return corners * [width, depth, height], np.array(faces)
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import seatlook.io.scene as module
+from io_samples import box
 from seatlook.design.pattern import cut_outline
 from seatlook.io.curves import write_curves
 from seatlook.io.scene import load_scene
@@ -23,10 +24,7 @@ def load(tmp_path):
     data = ROOT / "tests" / "data"
     shutil.copy(data / "seat_cushion_demo_aama.dxf", tmp_path / "cover.dxf")
     shutil.copy(data / "seat_cushion_demo.seams.toml", tmp_path / "cover.seams.toml")
-    corners = np.array([[x, y, z] for x in (-0.25, 0.25) for y in (-0.25, 0.25) for z in (0, 0.1)])
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = [f for a, b, c, d in quads for f in ((a, b, c), (a, c, d))]
-    write_obj(corners, np.array(faces), tmp_path / "foam.obj")
+    write_obj(*box(), tmp_path / "foam.obj")
     wire = np.array([[0.15, -0.23, 0.08], [0.15, 0.23, 0.08]])
     names = ("wire left", "wire across", "frame front")
     write_curves(dict.fromkeys(names, wire), tmp_path / "curves.toml")
