@@ -1,9 +1,11 @@
 """Record ColorVideoVDP of the 54 scenes into tests/data/cvvdp.json; run once, by hand.
 
+Given pictures that gallery/dusk.py kept, it prints instead what ColorVideoVDP says of their dusk.
+
 Needs packages that the project does not: cvvdp (MIT, without its dependencies), torch for the CPU,
 einops, imageio, matplotlib and tqdm. Of torchvision it takes only a Gaussian blur, of ffmpeg and
 huggingface_hub nothing for arrays, so these are stood in for here. From the folder ``tests``:
-``python -m sensory.record_cvvdp``.
+``python -m sensory.record_cvvdp [PICTURES.npz]``.
 """
 
 import importlib.metadata
@@ -12,6 +14,7 @@ import sys
 import types
 from pathlib import Path
 
+import numpy as np
 import torch
 
 from sensory.sweep import PPD, SIZE, scenes
@@ -58,7 +61,8 @@ def stand_ins():
         sys.modules.setdefault(name, module)
 
 
-def main():
+def observer(size, pixels_per_degree):
+    """Return what ColorVideoVDP says was lost of the second of two pictures, 10 - JOD."""
     stand_ins()
     import pycvvdp
     from pycvvdp.display_model import vvdp_display_geometry, vvdp_display_photo_eotf
@@ -66,18 +70,26 @@ def main():
     torch.set_num_threads(1)
     metric = pycvvdp.cvvdp(
         display_photometry=vvdp_display_photo_eotf(PEAK, contrast=1e9, EOTF="linear"),
-        display_geometry=vvdp_display_geometry(SIZE, ppd=PPD),
+        display_geometry=vvdp_display_geometry(size, ppd=pixels_per_degree),
         heatmap=None,
         device=torch.device("cpu"),
     )
-    lost = {}
-    for name, test, reference in scenes():
+
+    def lost(test, reference):
         colour = [
             torch.tensor(p, dtype=torch.float32).expand(3, *p.shape) for p in (test, reference)
         ]
-        jod, _ = metric.predict(*colour, dim_order="CHW")
-        lost[name] = round(10 - float(jod), 5)
-        sys.stdout.write(f"{name}: {lost[name]}\n")
+        return 10 - float(metric.predict(*colour, dim_order="CHW")[0])
+
+    return lost
+
+
+def record_scenes():
+    lost = observer(SIZE, PPD)
+    found = {}
+    for name, test, reference in scenes():
+        found[name] = round(lost(test, reference), 5)
+        sys.stdout.write(f"{name}: {found[name]}\n")
     record = {
         "measure": "10 - JOD of ColorVideoVDP",
         "cvvdp": importlib.metadata.version("cvvdp"),
@@ -85,11 +97,27 @@ def main():
         "pixels_per_degree": PPD,
         "size": SIZE,
         "display": f"linear, {PEAK:g} cd/m2, no ambient light",
-        "lost": lost,
+        "lost": found,
     }
     path = Path(__file__).parents[1] / "data" / "cvvdp.json"
     path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 
+def tell_dusk(kept):
+    """Loss by day and the share of the wrinkles' height that looks as they do by dusk."""
+    kept = dict(np.load(kept))
+    mask, ppd = kept.pop("mask"), float(kept.pop("pixels_per_degree"))
+    heights = kept.pop("heights")
+    lost = observer(mask.shape[::-1], ppd)
+    for name, (reference, *wrinkled) in kept.items():
+        shown = [np.where(mask, picture, reference) for picture in wrinkled]
+        day = [0.0, *(lost(picture, reference) for picture in shown)]
+        dusk = lost(1e-3 * shown[-1], 1e-3 * reference)
+        sys.stdout.write(f"{name}: {day[-1]:.2f}, {np.interp(dusk, day, heights):.2f}\n")
+
+
 if __name__ == "__main__":
-    main()
+    if len(sys.argv) > 1:
+        tell_dusk(sys.argv[1])
+    else:
+        record_scenes()
