@@ -11,16 +11,19 @@ def quadratic(start, columns, values, x, gradient):
     """Half of x . K x summed over the three axes; adds K x to ``gradient``.
 
     Rows of K sum to zero, so its upper triangle says all: every pair of vertices pulls on both
-    alike. Differences also spare the rounding in which a small energy would drown.
+    alike. Differences also spare the rounding in which a small energy would drown, and the sum
+    carries what it loses (Kahan 1965): rows of a triangle do not cancel, so it wanders far from
+    where it ends.
     """
-    total = 0.0
+    total = lost = 0.0
     for i in range(len(start) - 1):
         x0, x1, x2 = x[i, 0], x[i, 1], x[i, 2]
         a = b = c = 0.0
+        row = -lost
         for j in range(start[i], start[i + 1]):
             v, k = columns[j], values[j]
             d0, d1, d2 = x[v, 0] - x0, x[v, 1] - x1, x[v, 2] - x2
-            total -= k * (d0 * d0 + d1 * d1 + d2 * d2)
+            row -= k * (d0 * d0 + d1 * d1 + d2 * d2)
             d0, d1, d2 = k * d0, k * d1, k * d2
             a += d0
             b += d1
@@ -31,6 +34,9 @@ def quadratic(start, columns, values, x, gradient):
         gradient[i, 0] += a
         gradient[i, 1] += b
         gradient[i, 2] += c
+        added = total + row
+        lost = (added - total) - row
+        total = added
     return 0.5 * total
 
 
