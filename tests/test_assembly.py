@@ -9,6 +9,7 @@ import scenes
 from seatlook import model
 from seatlook.assembly import assemble
 from seatlook.errors import AssemblyError
+from seatlook.solver.elastic import ElasticSheet
 
 
 @pytest.fixture(scope="module")
@@ -36,12 +37,38 @@ def test_rest_runs_along_the_warp(cover):
 def test_imperfection_is_small_and_repeats(cover):
     again = assemble(scenes.two_panels())
     assert (again.positions == cover.positions).all()
-    bump = cover.positions[:, 2] - 0.005
-    assert bump.std() == pytest.approx(0.3 * 0.001, rel=0.4)
-    other = assemble(scenes.two_panels(), seed=1)
+    seeds = [assemble(scenes.two_panels(), seed=seed) for seed in range(8)]
+    bump = np.concatenate([c.positions[:, 2] - 0.005 for c in seeds])
+    assert np.sqrt((bump**2).mean()) == pytest.approx(0.3 * 0.001, rel=0.4)
+    other = seeds[1]
     assert (
         len(other.positions) != len(cover.positions) or (other.positions != cover.positions).any()
     )
+
+
+def test_imperfection_belongs_to_the_panel_not_to_the_mesh():
+    corners = np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.08, 0.1], [0.0, 0.1]])
+    coarse, fine = (
+        [cover.positions[np.isclose(cover.uv, corner).all(axis=1), 2].mean() for corner in corners]
+        for cover in (assemble(scenes.two_panels(), element_size=h) for h in (0.01, 0.004))
+    )
+    assert np.std(coarse) > 5e-5
+    np.testing.assert_allclose(coarse, fine, atol=1e-12)
+
+
+def test_imperfection_stores_the_same_little_on_any_mesh():
+    """A panel lies uneven on the table, not crumpled: its waves are 30 mm long and more."""
+    stored = []
+    for size in (0.008, 0.004):
+        cover = assemble(scenes.two_panels(), element_size=size)
+        sheet = ElasticSheet(
+            cover.rest, cover.faces, cover.panel, [m.fabric for m in cover.materials]
+        )
+        work = np.zeros_like(cover.positions)
+        stored.append(sum(energy.value(cover.positions, work) for energy in sheet.energies))
+    # Laid flat over a rod of 0.5 m the two panels, 0.018 m2 of 9e-4 N m, would store 3e-5 J.
+    assert 0.0 < stored[1] < 3e-5
+    assert stored[0] == pytest.approx(stored[1], rel=0.1)
 
 
 @pytest.mark.parametrize("depth_b", [0.1, 0.104])

@@ -13,6 +13,11 @@ from seatlook.errors import AssemblyError, Problem
 from seatlook.model import Cover, FloatArray, Hook, IntArray, Panel, Scene
 from seatlook.zones import zones
 
+# Wavelengths [m] of a cut panel's unevenness: from the shortest wrinkle of a cover on its foam to
+# the size of a panel. Shorter waves would be crumpling, and store as much work as the making takes.
+_SHORTEST, _LONGEST = 0.03, 0.24
+_WAVES = 64
+
 
 def assemble(scene: Scene, *, element_size: float | None = None, seed: int | None = None) -> Cover:
     """Mesh and place all panels of a scene and pair up what is sewn, hooked and framed.
@@ -52,7 +57,7 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
     return Cover(
         rest=_along_grain(uv, owner, panels),
         uv=uv,
-        positions=placed + _imperfection(uv, owner, scene, shortest=2 * h, seed=seed),
+        positions=placed + _imperfection(uv, owner, scene, seed),
         faces=faces,
         panel=owner[faces[:, 0]],
         panel_names=tuple(p.name for p in panels),
@@ -104,24 +109,26 @@ def _along_grain(uv: FloatArray, owner: IntArray, panels: Sequence[Panel]) -> Fl
     return np.column_stack([(uv * warp).sum(axis=1), (uv * weft).sum(axis=1)])
 
 
-def _imperfection(
-    uv: FloatArray, owner: IntArray, scene: Scene, *, shortest: float, seed: int
-) -> FloatArray:
+def _imperfection(uv: FloatArray, owner: IntArray, scene: Scene, seed: int) -> FloatArray:
     """Offset (n, 3) [m] along the panels' normals, rms 0.3 t: a flat sheet never buckles."""
     names = [p.name for p in scene.pattern.panels]
     thickness = np.array([scene.materials[name].fabric.thickness for name in names])
     normal = np.stack([scene.placement[name].rotation[:, 2] for name in names])
-    height = 0.3 * thickness[owner] * _noise(uv, shortest, seed)
+    height = 0.3 * thickness[owner] * _waves(uv, seed)
     return np.asarray(height[:, None] * normal[owner])
 
 
-def _noise(uv: FloatArray, shortest: float, seed: int) -> FloatArray:
-    """Random smooth field (n,) of rms 1, wavelengths from ``shortest`` [m] to four times that."""
+def _waves(uv: FloatArray, seed: int) -> FloatArray:
+    """Random smooth field (n,) of rms 1 on any mesh, as a cut panel lies on the table.
+
+    Every wavelength bends the panel as much as any other, so the long ones are the high ones.
+    """
     rng = np.random.default_rng(seed)
-    wavelength = shortest * 4.0 ** rng.random(64)
-    angle, phase = 2 * np.pi * rng.random((2, 64))
+    wavelength = _SHORTEST * (_LONGEST / _SHORTEST) ** rng.random(_WAVES)
+    angle, phase = 2 * np.pi * rng.random((2, _WAVES))
     k = 2 * np.pi / wavelength * np.stack([np.cos(angle), np.sin(angle)])
-    return np.asarray(np.cos(uv @ k + phase).sum(axis=1) / np.sqrt(32.0))
+    amplitude = wavelength**2 / np.sqrt(0.5 * (wavelength**4).sum())
+    return np.asarray(np.cos(uv @ k + phase) @ amplitude)
 
 
 def _hooked_lines(hooks: Sequence[Hook], panel: Panel) -> dict[str, FloatArray]:
