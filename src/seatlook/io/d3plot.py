@@ -141,7 +141,7 @@ class _Reader:
 
 def _tensors(six: FloatArray) -> FloatArray:
     """(e, 3, 3) from xx, yy, zz, xy, yz, zx."""
-    return six[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
+    return six.take([[0, 3, 5], [3, 1, 4], [5, 4, 2]], axis=1)
 
 
 def _notes(layout: Layout, chosen: Selection) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model import Camera, Solution
-from seatlook.pbr.maps import FACTOR, coloured, sampled, titled
+from seatlook.pbr.maps import blended, coloured, titled
 from seatlook.pbr.picture import Picture
 from seatlook.pbr.studio import studio
 
@@ -42,13 +42,10 @@ def render_checker(
     if motif not in get_args(Motif):
         raise InputError.single("motif", got=repr(motif), expected="'checker' or 'stripe'")
     stage = studio(solution)
-    ids = stage.faces(camera, FACTOR)
     corners = solution.cover.uv[solution.cover.faces]
-    (u, cosine), (v, _) = (
-        sampled(stage, ids, camera, np.ascontiguousarray(corners[:, :, k])) for k in (0, 1)
-    )
+    u, v = (blended(stage, camera, np.ascontiguousarray(corners[:, :, k])) for k in (0, 1))
     cell = np.floor(v / size) + (np.floor(u / size) if motif == "checker" else 0.0)
     what = "squares" if motif == "checker" else "stripes along the warp"
-    pixels = coloured(cell % 2, cosine, ids, _TONES, (0.0, 1.0), bare=_BARE)
+    pixels = coloured(cell % 2, stage, camera, _TONES, (0.0, 1.0), bare=_BARE)
     picture = titled(pixels, f"{what} of {1e3 * size:g} mm on the pattern")
     return Picture(pixels=np.asarray(picture), value_range=(0.0, 1e3 * size))

@@ -44,9 +44,9 @@ def sketch(solution: Solution, *, camera: Camera) -> npt.NDArray[np.uint8]:
     if not (ids >= 0).any():
         raise RenderError(f"camera {camera.name}: nothing is in the picture")
     lit = _lit(mesh.normals, camera)
-    value, cosine = np.zeros(ids.shape), np.ones(ids.shape)
+    value = np.zeros(ids.shape)
     # Every corner of the foam has a vertex of its own, so its light need not be blended.
-    kernel.paint(mesh, eye, ids, lit[mesh.faces], len(mesh.faces), value, cosine)
+    kernel.paint(mesh, eye, ids, lit[mesh.faces], len(mesh.faces), value)
     tint = np.vstack([_CLAY[np.arange(len(cover.panel_names)) % len(_CLAY)], FOAM.albedo])
     panel = np.where(ids < m, mesh.panel[ids], len(tint) - 1)
     colour = tint[panel] * (_SKY + (1.0 - _SKY) * value)[..., None]

@@ -65,11 +65,12 @@ def render_map(
         colormap = "diverging" if inside else "viridis"
     low, high = _range(values, value_range, colormap)
     stage = studio(solution)
-    ids = stage.faces(camera, FACTOR)
-    corner = _corner_values(values, solution, smooth=smooth)
-    value, cosine = sampled(stage, ids, camera, corner)
+    if smooth:
+        value = blended(stage, camera, _corner_values(values, solution))
+    else:
+        value = _flat(stage, camera, values)
     table = colour_table(colormap)
-    pixels = coloured(value, cosine, ids, table, (low, high))
+    pixels = coloured(value, stage, camera, table, (low, high))
     return Picture(
         pixels=with_bar(pixels, table, (low, high), title, unit), value_range=(low, high)
     )
@@ -96,10 +97,8 @@ def _range(
     return low, high
 
 
-def _corner_values(values: FloatArray, solution: Solution, *, smooth: bool) -> FloatArray:
-    """Values (m, 3) at the corners of the solver's faces."""
-    if not smooth:
-        return np.repeat(values[:, None], 3, axis=1)
+def _corner_values(values: FloatArray, solution: Solution) -> FloatArray:
+    """Means (m, 3) of the faces around the corners of the solver's faces."""
     faces, area = solution.cover.faces, solution.cover.rest_area
     known = np.where(np.isfinite(values), area, 0.0)
     n = len(solution.positions)
@@ -109,24 +108,27 @@ def _corner_values(values: FloatArray, solution: Solution, *, smooth: bool) -> F
         return np.asarray((total / weight)[faces])
 
 
-def sampled(
-    stage: Studio, ids: npt.NDArray[np.int32], camera: Camera, corner: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Value at each sample (nan off the cover) and cosine of its normal to the view.
+def _flat(stage: Studio, camera: Camera, values: FloatArray) -> FloatArray:
+    """Value of the solver's face (m,) at each sample, nan off the cover."""
+    drawn, count = stage.faces(camera, FACTOR), stage.surface.faces
+    cover = (drawn >= 0) & (drawn < count)
+    row = np.where(cover, drawn // (count // len(values)), len(values))
+    return np.append(values, np.nan).take(row)
 
-    ``corner`` (m, 3) belongs to the corners of the solver's faces.
-    """
+
+def blended(stage: Studio, camera: Camera, corner: FloatArray) -> FloatArray:
+    """Value at each sample from those at the corners (m, 3) of the solver's faces, nan off it."""
+    ids = stage.faces(camera, FACTOR)
     value = np.full(ids.shape, np.nan)
-    cosine = np.ones(ids.shape)
     mesh, count = stage.surface.mesh, stage.surface.faces
-    kernel.paint(mesh, eye_of(camera, FACTOR), ids, corner, count, value, cosine)
-    return value, cosine
+    kernel.paint(mesh, eye_of(camera, FACTOR), ids, corner, count, value)
+    return value
 
 
 def coloured(
     value: FloatArray,
-    cosine: FloatArray,
-    ids: npt.NDArray[np.int32],
+    stage: Studio,
+    camera: Camera,
     table: FloatArray,
     value_range: tuple[float, float],
     *,
@@ -139,11 +141,10 @@ def coloured(
     table : (k, 3) linear colours from one end of the range to the other
     bare : linear grey of what has no value
     """
+    ids, cosine = stage.faces(camera, FACTOR), stage.facing(camera, FACTOR)
     mean = np.empty((ids.shape[0] // FACTOR, ids.shape[1] // FACTOR, 3))
     paper = (PAPER / 255) ** 2.2
-    colour.coloured(
-        value, cosine, ids, *value_range, table, np.full(3, bare), paper, FACTOR, mean
-    )  # fmt: skip
+    colour.coloured(value, cosine, ids, *value_range, table, bare, paper, FACTOR, mean)
     return np.rint(255 * srgb_encode(np.clip(mean, 0, 1))).astype(np.uint8)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model import Camera, FloatArray, Solution
-from seatlook.pbr.maps import FACTOR, colour_table, coloured, sampled, with_bar
+from seatlook.pbr.maps import FACTOR, colour_table, coloured, with_bar
 from seatlook.pbr.picture import Picture
 from seatlook.pbr.studio import studio
 
@@ -44,12 +44,9 @@ def render_pixel_map(
     if not high > low:
         raise InputError.single("value_range", got=value_range, expected="low < high")
     stage = studio(solution)
-    ids = stage.faces(camera, FACTOR)
-    nothing = np.zeros((len(solution.cover.faces), 3))
-    _, cosine = sampled(stage, ids, camera, nothing)
     table = colour_table("viridis")
     value = np.repeat(np.repeat(values, FACTOR, axis=0), FACTOR, axis=1)
-    pixels = coloured(value, cosine, ids, table, value_range, bare=_BARE)
+    pixels = coloured(value, stage, camera, table, value_range, bare=_BARE)
     return Picture(
         pixels=with_bar(pixels, table, value_range, title, unit), value_range=value_range
     )

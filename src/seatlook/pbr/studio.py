@@ -123,6 +123,17 @@ class Studio:
         key = ("faces", camera_key(camera), factor)
         return np.asarray(self._kept(key, lambda: self._draw(camera, factor)))
 
+    def facing(self, camera: Camera, factor: int = 1) -> npt.NDArray[np.float32]:
+        """Cosine of the normal to the view at each sample of :meth:`faces`; 1 where is none."""
+        key = ("facing", camera_key(camera), factor)
+        return np.asarray(self._kept(key, lambda: self._facing(camera, factor)))
+
+    def _facing(self, camera: Camera, factor: int) -> npt.NDArray[np.float32]:
+        ids = self.faces(camera, factor)
+        cosine = np.ones(ids.shape, dtype=np.float32)
+        surface.facing(self.surface.mesh, eye_of(camera, factor), ids, cosine)
+        return cosine
+
     def _draw(self, camera: Camera, factor: int) -> npt.NDArray[np.int32]:
         from seatlook.pbr._vtk import face_window
 

@@ -58,6 +58,8 @@ def subdivide(points: FloatArray, faces: IntArray, *, levels: int, corners: IntA
     would lose 10 % of its height. Progressive interpolation (Cheng et al. 2009) moves the control
     points until the refined old vertices are back where the solver put them.
     """
+    if levels == 0:
+        return Refined(np.ascontiguousarray(points), faces, ())
     n = len(points)
     operator = sparse.eye_array(n, format="csr")
     parents = []

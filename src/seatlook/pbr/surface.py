@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 
 from seatlook.errors import RenderError
 from seatlook.model import FloatArray, IntArray, Solution
@@ -95,7 +96,7 @@ def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
 
     Panels share no vertices, so their seams stay creases.
     """
-    a, b, c = (x[faces[:, k]] for k in range(3))
+    a, b, c = (x.take(corner, axis=0) for corner in faces.T)
     n = _sum_to_vertices(np.cross(b - a, c - a), faces, len(x))
     length = np.linalg.norm(n, axis=1, keepdims=True)
     lost = length[:, 0] == 0
@@ -113,8 +114,8 @@ def _levels(element_size: float, faces: int) -> int:
 
 def _warp(x: FloatArray, uv: FloatArray, faces: np.ndarray) -> FloatArray:
     """Unit direction (n, 3) of the first pattern coordinate at the vertices."""
-    a, b, c = (x[faces[:, k]] for k in range(3))
-    p, q, r = (uv[faces[:, k]] for k in range(3))
+    a, b, c = (x.take(corner, axis=0) for corner in faces.T)
+    p, q, r = (uv.take(corner, axis=0) for corner in faces.T)
     # det times dx/du: as a sum over faces this weights each with its area.
     along = (b - a) * (r - p)[:, 1:] - (c - a) * (q - p)[:, 1:]
     warp = _sum_to_vertices(along, faces, len(x))
@@ -123,9 +124,10 @@ def _warp(x: FloatArray, uv: FloatArray, faces: np.ndarray) -> FloatArray:
 
 
 def _sum_to_vertices(values: FloatArray, faces: np.ndarray, n: int) -> FloatArray:
-    corner = faces.ravel()
-    repeated = np.repeat(values, 3, axis=0)
-    return np.column_stack([np.bincount(corner, repeated[:, k], minlength=n) for k in range(3)])
+    """Sum (n, d) at each vertex of the values (m, d) of its faces."""
+    m = len(faces)
+    corners = (np.ones(3 * m), faces.ravel(), np.arange(0, 3 * m + 1, 3))
+    return np.asarray(sparse.csc_array(corners, shape=(n, m)) @ values)
 
 
 def _with_allowance(mesh: Mesh, edges: seam.SewnEdges) -> Mesh:

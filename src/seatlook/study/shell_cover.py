@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.mesh import face_normals, face_vectors
+from seatlook.mesh import face_vectors
 from seatlook.model import Cover, FloatArray, IntArray, Material, Shells, ShellState, Solution
 from seatlook.wrinkle.shells import ShellWrinkles, element_frames
 
@@ -59,11 +59,12 @@ def shell_cover(
     chosen = _materials(parts, materials)
     reference = state.positions if shells.reference is None else shells.reference
     faces, element = _oriented(shells, wrinkles)
+    area = face_vectors(reference, faces)
     flat = np.array([
-        shells.reference is not None and _is_flat(reference, faces[part[element] == k])
-        for k in range(len(parts))
+        shells.reference is not None and _is_flat(reference, faces[mine], area[mine])
+        for mine in (part[element] == k for k in range(len(parts)))
     ])  # fmt: skip
-    panel, owner, look = _panels(reference, faces, part[element], flat)
+    panel, owner, look = _panels(area, part[element], flat)
     corners, node, of_panel = _own_vertices(faces, panel, shells.node_count)
     rest, warp = _laid_out(reference[node], of_panel, look)
     names = tuple(shells.part_names.get(int(p)) or f"part {p}" for p in parts)
@@ -139,12 +140,11 @@ def _as_thick(material: Material, thickness: float) -> Material:
     return replace(material, fabric=fabric)
 
 
-def _is_flat(points: FloatArray, faces: IntArray) -> bool:
+def _is_flat(points: FloatArray, faces: IntArray, area: FloatArray) -> bool:
     """Whether a part lies in its mean plane, with no face turned over in it."""
     used = np.zeros(len(points), dtype=bool)
     used[faces] = True
     p = points[used]
-    area = face_vectors(points, faces)
     normal = area.sum(axis=0)
     size = float(np.linalg.norm(normal))
     if size == 0 or not (area @ normal > 0).all():
@@ -153,18 +153,17 @@ def _is_flat(points: FloatArray, faces: IntArray) -> bool:
 
 
 def _panels(
-    points: FloatArray, faces: IntArray, part: IntArray, flat: np.ndarray
+    area: FloatArray, part: IntArray, flat: np.ndarray
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Panel (m,) of each face; the part (p,) and the outward direction (p, 3) of each panel."""
-    normals = face_normals(points, faces)
-    axis = np.abs(normals).argmax(axis=1)
-    side = 2 * axis + (normals[np.arange(len(faces)), axis] < 0)
+    axis = np.abs(area).argmax(axis=1)
+    side = 2 * axis + (area[np.arange(len(area)), axis] < 0)
     key, panel = np.unique(6 * part + np.where(flat[part], 0, side), return_inverse=True)
     owner = key // 6
     look = np.repeat(np.eye(3), 2, axis=0) * np.tile([1.0, -1.0], 3)[:, None]
     out = look[key % 6]
     for k in np.flatnonzero(flat[owner]):
-        total = face_vectors(points, faces[panel == k]).sum(axis=0)
+        total = area[panel == k].sum(axis=0)
         out[k] = total / np.linalg.norm(total)
     return panel.astype(np.int64), owner, out
 

@@ -161,12 +161,8 @@ def lift(mesh, f, b1, b2, p):
 
 
 @njit(cache=True)
-def paint(mesh, eye, ids, corner, cover_faces, value, cosine):
-    """Value of every sample of the cover, blended from its face's corners (m, 3), and n . v.
-
-    ``corner`` belongs to the faces before refinement; child 4 f + k keeps a corner k, the last
-    one takes the three middles.
-    """
+def facing(mesh, eye, ids, cosine):
+    """Cosine of the smooth normal to the view at every sample."""
     for j in range(ids.shape[0]):
         for i in range(ids.shape[1]):
             f = ids[j, i]
@@ -174,10 +170,23 @@ def paint(mesh, eye, ids, corner, cover_faces, value, cosine):
                 continue
             ray = ray_through(eye, i, j)
             b1, b2, _, _ = meet(mesh, eye, f, ray)
-            n = unit(blend(mesh.normals, mesh.faces, f, b1, b2))
-            cosine[j, i] = abs(dot(n, ray))
-            if f >= cover_faces:
+            cosine[j, i] = abs(dot(unit(blend(mesh.normals, mesh.faces, f, b1, b2)), ray))
+
+
+@njit(cache=True)
+def paint(mesh, eye, ids, corner, cover_faces, value):
+    """Value of every sample of the cover, blended from its face's corners (m, 3).
+
+    ``corner`` belongs to the faces before refinement; child 4 f + k keeps a corner k, the last
+    one takes the three middles.
+    """
+    for j in range(ids.shape[0]):
+        for i in range(ids.shape[1]):
+            f = ids[j, i]
+            if f < 0 or f >= cover_faces:
                 continue
+            ray = ray_through(eye, i, j)
+            b1, b2, _, _ = meet(mesh, eye, f, ray)
             step = cover_faces // len(corner)
             while step > 1:
                 b1, b2 = _in_parent(f % 4, b1, b2)
