@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_array, diags_array
 
-from covers import cover, sheet
+from covers import cover, flat_foam, sheet
 from seatlook.solver.factor import Factor
 from seatlook.solver.lbfgs import Potential
 from seatlook.solver.process import Process
@@ -29,24 +29,36 @@ def chain(n, lift):
 def test_positive_matrices_have_no_way_down(lift):
     matrix = chain(60, lift)
     guess = Factor(csc_array(diags_array(np.full(60, 2.0))))
-    assert downhill(Potential([Quadratic(matrix)]), np.zeros((60, 3)), guess) is None
+    assert downhill(Potential([Quadratic(matrix)]), np.zeros((60, 3)), guess, most=200) is None
 
 
 @pytest.mark.parametrize("lift", [-1e-1, -1e-2, -3e-3])
 def test_one_negative_eigenvalue_is_found(lift):
     matrix = chain(60, lift)
     guess = Factor(csc_array(diags_array(np.full(60, 2.0))))
-    found = downhill(Potential([Quadratic(matrix)]), np.zeros((60, 3)), guess)
+    found = downhill(Potential([Quadratic(matrix)]), np.zeros((60, 3)), guess, most=200)
     assert found is not None
     assert (found * (matrix @ found)).sum() < 0.0
 
 
-def test_a_flat_cover_past_its_buckling_load_is_pushed_out_of_its_plane():
-    process = Process(cover([sheet(0.2, 0.06, 0.02)], h=0.02), dt=0.02, iterations=1,
-                      method="newton")  # fmt: skip
+@pytest.mark.parametrize("method", ["lbfgs", "newton"])
+def test_a_flat_cover_past_its_buckling_load_is_pushed_out_of_its_plane(method):
+    process = Process(cover([sheet(0.2, 0.06, 0.02)], h=0.02), dt=0.02, iterations=1, method=method)
     assert not process.downhill()
     process.x[:, 0] *= 0.98
     flat = process._static.value(process.state, np.zeros_like(process.state))
     assert process.downhill(1e-4)
     assert 5e-5 < np.abs(process.x[:, 2]).max() <= 1e-4
     assert process._static.value(process.state, np.zeros_like(process.state)) < flat
+
+
+@pytest.mark.parametrize(("compression", "unstable"), [(0.012, False), (0.014, True)])
+def test_a_cover_on_foam_is_unstable_from_its_buckling_load_on(compression, unstable):
+    """A rectangle of 0.2 x 0.1 m pressed 0.02 mm into the foam, between rigid ends."""
+    rectangle = sheet(0.2, 0.1, 0.01, z=0.0005, at=(-0.1, -0.05))
+    process = Process(cover([rectangle], foam=flat_foam(0.4), h=0.01), dt=0.02, iterations=1)
+    process.begin(rest=True)
+    process.x[:, 0] *= 1.0 - compression
+    process.x[:, 2] -= 2e-5
+    process.record()
+    assert process.downhill() == unstable

@@ -66,8 +66,8 @@ def solve(
     shape : called with stage, time [s] and positions (n, 3) [m] after every time step; the
         positions are those the solver goes on with, so copy what is kept
     method : "lbfgs" with prefactored scalar matrices; "newton" with the projected Hessian of chords
-        and hinges factored every few iterations, for limp sheets that turn far, which at rest
-        looks for a direction that leads downhill and leaves an unstable balance; "explicit" central
+        and hinges factored every few iterations, for limp sheets that turn far; both look at rest
+        for a direction that leads downhill and leave an unstable balance; "explicit" central
         differences with the time step their mesh allows, or ``Explicit(time_step=...,
         scale_mass=True)``
     dt : float [s]      time step; what lags is updated once in it
@@ -140,21 +140,16 @@ class _Run:
             )
 
     def settle(self) -> list[str]:
-        """Come to rest; with Newton's method leave balances that are unstable, or say so."""
-        process = self.process
-        process.begin(rest=True)
-        self._rest()
-        if process.method != "newton":
-            return []
-        kick = _KICK * float(process.cover.thickness.max())
-        for _ in range(_KICKS):
-            if not process.downhill(kick):
+        """Come to rest; leave balances that are unstable, or say so."""
+        self.process.begin(rest=True)
+        kick = _KICK * float(self.process.cover.thickness.max())
+        for push in (*[kick] * _KICKS, 0.0):
+            if not self._rest() or not self.process.downhill(push):
                 return []
-            self._rest()
-        return ["unstable: a direction leads downhill"] if process.downhill() else []
+        return ["unstable: a direction leads downhill"]
 
-    def _rest(self) -> None:
-        """Repeat the static solve until all that lags agrees with the shape."""
+    def _rest(self) -> bool:
+        """Repeat the static solve until all that lags agrees with the shape; whether it does."""
         process = self.process
         record, spent, dt = process.record(), 0, _LONGER * process.dt
         for _ in range(_ROUNDS):
@@ -163,8 +158,11 @@ class _Run:
             self.add(_REST, record)
             spent += record.iterations
             dt *= 2.0
-            if not unrest(process, record) or spent >= _MOST_ITERATIONS:
-                return
+            if not unrest(process, record):
+                return True
+            if spent >= _MOST_ITERATIONS:
+                break
+        return False
 
     def solution(self, stage: str, why: list[str]) -> Solution:
         """The state as a Solution."""

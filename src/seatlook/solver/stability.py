@@ -11,18 +11,19 @@ from seatlook.solver.lbfgs import Potential
 
 _WAY = 1e-7  # m, of the differences
 _ENOUGH = 1e-6  # of the first residual: no direction was left out
-_MOST = 200
 _DOWN = -1e-6  # of what the preconditioner says of the direction; above it is rounding
 
 
-def downhill(potential: Potential, x: FloatArray, factor: Preconditioner) -> FloatArray | None:
+def downhill(
+    potential: Potential, x: FloatArray, factor: Preconditioner, *, most: int
+) -> FloatArray | None:
     """Return a direction in which the potential curves downwards at ``x``, None if none is found.
 
     Conjugate gradients on the Hessian, whose products are differences of the gradient, from a
     random right-hand side: before they can end on an indefinite matrix they come across such a
-    direction (Nocedal and Wright 2006, Numerical Optimization, section 7.1). They stop after 200
-    products; directions that hardly lead down are found last and may be left out then, so this is
-    a search and no proof.
+    direction (Nocedal and Wright 2006, Numerical Optimization, section 7.1). They stop after
+    ``most`` products; directions that hardly lead down are found last and may be left out then, so
+    this is a search and no proof.
 
     Parameters
     ----------
@@ -33,7 +34,7 @@ def downhill(potential: Potential, x: FloatArray, factor: Preconditioner) -> Flo
     factor.solve(residual, solved)
     direction = solved.copy()
     left = first = guess = kernel.dot(residual, solved)
-    for _ in range(_MOST):
+    for _ in range(most):
         size = kernel.largest_row(direction)
         if not left > _ENOUGH**2 * first or size == 0.0:
             break
