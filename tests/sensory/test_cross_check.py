@@ -60,6 +60,11 @@ def test_a_tie_or_a_disagreement_is_no_order():
     assert more_visible(a, Measures(vwi=1.0, log_ratio=0.1, dissimilarity=0.2)) == "not separable"
 
 
+def test_the_same_twice_is_equal_not_inseparable():
+    a = Measures(vwi=2.0, log_ratio=0.2, dissimilarity=0.1)
+    assert more_visible(a, a) == "equal"
+
+
 def test_white_must_be_a_luminance():
     with pytest.raises(InputError, match="white: got 0, expected a luminance above 0"):
         dissimilarity(np.ones((16, 16)), np.ones((16, 16)), white=0)

@@ -14,7 +14,7 @@ from seatlook.sensory.observer import OBSERVER
 from seatlook.sensory.region import check_luminance, check_mask
 from seatlook.sensory.vwi import Mask
 
-Verdict = Literal["first", "second", "not separable"]
+Verdict = Literal["first", "second", "equal", "not separable"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +87,7 @@ def dissimilarity(
 
 
 def more_visible(first: Measures, second: Measures) -> Verdict:
-    """Say which of two differences is more visible, if all measures agree.
+    """Say which of two differences is more visible, if all measures agree; equal: in all of them.
 
     Examples
     --------
@@ -101,9 +101,10 @@ def more_visible(first: Measures, second: Measures) -> Verdict:
         float(np.sign(getattr(first, name) - getattr(second, name)))
         for name in ("vwi", "log_ratio", "dissimilarity")
     }
-    if signs == {1.0}:
-        return "first"
-    return "second" if signs == {-1.0} else "not separable"
+    if len(signs) > 1:
+        return "not separable"
+    verdicts: dict[float, Verdict] = {1.0: "first", -1.0: "second", 0.0: "equal"}
+    return verdicts[signs.pop()]
 
 
 def _window(values: FloatArray) -> FloatArray:
