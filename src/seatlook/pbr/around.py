@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Hashable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from seatlook.model import Camera, FloatArray, IntArray, Rig
+from seatlook.pbr.kept import Kept
 from seatlook.pbr.kernels import bvh, gloss, light, rays, shade
 from seatlook.pbr.kernels.light import Lights
 from seatlook.pbr.quality import Quality
@@ -37,9 +38,7 @@ class Surroundings:
     reflections per camera. Lights and materials cost only what these faces send.
     """
 
-    def __init__(
-        self, surface: Surface, tree: bvh.Bvh, kept: Callable[[Hashable, Callable[[], Any]], Any]
-    ) -> None:
+    def __init__(self, surface: Surface, tree: bvh.Bvh, kept: Kept) -> None:
         self.surface, self.tree, self.kept = surface, tree, kept
         self.few = surface.solved
 

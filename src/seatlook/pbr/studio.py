@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import functools
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +17,7 @@ from seatlook.pbr.around import Surroundings, camera_key
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
 from seatlook.pbr.foam import FOAM
+from seatlook.pbr.kept import Kept
 from seatlook.pbr.kernels import bvh, rays, shade, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.measured import load_maps, map_sets, mean_albedo
@@ -57,7 +57,7 @@ class Studio:
         if shading is not None:
             normals = drawn_surface(shading).mesh.normals
             self.surface = replace(self.surface, mesh=self.surface.mesh._replace(normals=normals))
-        self._cache: OrderedDict[Hashable, Any] = OrderedDict()
+        self._kept = Kept()
 
     # Maps need neither: they are made for the first picture.
     @functools.cached_property
@@ -213,15 +213,6 @@ class Studio:
             np.zeros(1, dtype=MATERIAL),
             self.thread,
         )
-
-    def _kept(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return the cached value of ``key``; the oldest of more than 24 is dropped."""
-        if key not in self._cache:
-            self._cache[key] = make()
-            if len(self._cache) > 24:
-                self._cache.popitem(last=False)
-        self._cache.move_to_end(key)
-        return self._cache[key]
 
 
 def render(
