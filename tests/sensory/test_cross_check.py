@@ -54,9 +54,10 @@ def test_black_does_not_decide():
     assert log_ratio(np.zeros((16, 16)), np.zeros((16, 16))) == 0.0
 
 
-def test_a_tie_or_a_disagreement_is_no_order():
+def test_a_tie_of_some_or_a_disagreement_is_no_order():
     a = Measures(vwi=2.0, log_ratio=0.1, dissimilarity=0.3)
-    assert more_visible(a, a) == "not separable"
+    b = Measures(vwi=1.0, log_ratio=0.2, dissimilarity=0.2)
+    assert more_visible(a, b) == "not separable"
     assert more_visible(a, Measures(vwi=1.0, log_ratio=0.1, dissimilarity=0.2)) == "not separable"
 
 
