@@ -63,14 +63,16 @@ def _work(solution: Solution) -> Table | None:
     rows = (
         ("work of seams, hooks and frame", balance.ties),
         ("work of the weight", balance.weight),
-        ("stored, less what the uneven panels began with", -balance.stored),
+        ("stored in the uneven panels at the start", balance.placed),
+        ("stored in cover and foam at the end", -balance.at_rest),
         ("friction on the foam", -balance.friction),
         ("damping by the time steps", -balance.damping),
         ("left over", balance.unexplained),
     )
-    share = 100.0 / balance.work_in if balance.work_in else 0.0
+    # Of the work alone, what uneven panels bring along would be shares above 100 %.
+    share = 100.0 / balance.supplied if balance.supplied else 0.0
     return Table(
-        heads=("energy", "[mJ]", "[% of the work]"),
+        heads=("energy", "[mJ]", "[% of all there was]"),
         rows=tuple((name, 1e3 * value, share * value) for name, value in rows),
     )
 

@@ -14,13 +14,15 @@ class EnergyBalance:
     Parameters
     ----------
     ties : work of seams, hooks and frame on the cover; weight : of gravity
-    stored : elastic energy of sheet and foam at the end, less what the panels began with
+    placed : elastic energy of the panels where they begin, as their unevenness stores it
+    stored : elastic energy of sheet and foam at the end, less ``placed``
     friction : taken up by the foam's friction
     damping : by how much the time steps lower the potential, which an implicit step gives away
     """
 
     ties: float
     weight: float
+    placed: float
     stored: float
     friction: float
     damping: float
@@ -29,6 +31,16 @@ class EnergyBalance:
     def work_in(self) -> float:
         """All work done on the cover [J]."""
         return self.ties + self.weight
+
+    @property
+    def at_rest(self) -> float:
+        """Elastic energy of sheet and foam at the end [J]."""
+        return self.placed + self.stored
+
+    @property
+    def supplied(self) -> float:
+        """What there was to spend [J]: the work that was done on the cover, and its start."""
+        return sum(max(part, 0.0) for part in (self.ties, self.weight, self.placed))
 
     @property
     def unexplained(self) -> float:
@@ -46,12 +58,12 @@ def energy_balance(solution: Solution) -> EnergyBalance | None:
     history = solution.history
     if "damping" not in history or not history["damping"].any():
         return None
+    placed = float(history["placed"].sum())
     return EnergyBalance(
         ties=float(history["tie_work"].sum()),
         weight=float(history["weight_work"].sum()),
-        stored=solution.figures["elastic_energy"]
-        + solution.figures["foam_energy"]
-        - float(history["placed"].sum()),
+        placed=placed,
+        stored=solution.figures["elastic_energy"] + solution.figures["foam_energy"] - placed,
         friction=float(history["friction_work"].sum()),
         damping=float(history["damping"].sum()),
     )
