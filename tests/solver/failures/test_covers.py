@@ -76,3 +76,33 @@ def test_start_beyond_the_middle_of_the_foam():
     s = honest(solve(cover([(X, T, x)], foam=flat_foam(), stages=[DROP], h=0.03)))
     assert s.status == "not converged"
     assert "moves" in s.reason or "out-of-balance" in s.reason
+
+
+def over_an_edge():
+    """Limp square of 0.2 m, turned by half a radian, that reaches beyond a block by 0.13 m."""
+    X, T, x = sheet(0.2, 0.2, 0.0175, z=0.0004, at=(-0.1, -0.1))
+    c, s = np.cos(0.5), np.sin(0.5)
+    x[:, :2] = x[:, :2] @ np.array([[c, s], [-s, c]]) + [0.13, 0.0]
+    limp = {"bending_warp": 5e-5, "bending_weft": 5e-5, "bending_twist": 2.5e-5}
+    stretch = {"warp": model.Curve.linear(2e3), "weft": model.Curve.linear(2e3)}
+    return cover(
+        [(X, T, x)],
+        foam=flat_foam(friction=0.5),
+        stages=[DROP],
+        h=0.0175,
+        thickness=5e-4,
+        density=0.3,
+        **limp,
+        **stretch,
+        shear=model.Curve.linear(500.0),
+    )
+
+
+def test_limp_sheet_over_an_edge_comes_to_rest_in_folds():
+    """By either method, in the same shape within a hundredth of its energy, and stable."""
+    first, second = (honest(solve(over_an_edge(), method=method)) for method in ("lbfgs", "newton"))
+    for s in (first, second):
+        assert s.status == "converged", s.reason
+        assert s.positions[:, 2].min() < -0.1
+    energy = [s.figures["potential_energy"] for s in (first, second)]
+    assert energy[0] == pytest.approx(energy[1], rel=0.01)
