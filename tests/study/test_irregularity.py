@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,9 @@ from seatlook.cli import run
 from seatlook.errors import InputError
 from seatlook.io.sweep import Tolerance, read_sweep
 from seatlook.mesh import face_areas
+from seatlook.study.cell import plan
 from seatlook.study.irregularity import draw, irregular, rank_correlation
+from seatlook.study.probability import chance
 
 
 def tolerance(kind: str, of: str | None = None, **change: object) -> Tolerance:
@@ -95,6 +99,15 @@ def test_a_sweep_of_irregular_covers_leaves_a_map_and_its_causes(tmp_path, capsy
     assert heads == "input,rank_correlation,rank_correlation_of_size,noise"
     assert {first.split(",")[0], second.split(",")[0]} == {"ease", "foam"}
     assert (out / "probability.png").read_bytes().startswith(b"\x89PNG")
+    table = csv.DictReader((out / "probability.csv").read_text().splitlines())
+    zones = {row["zone"]: row for row in table}
+    assert {row["converged"] for row in zones.values()} == {"5"}
+    assert all(row["largest"] == row["largest_if_left_out_above"] for row in zones.values())
+    # A cell that failed is a cover without W2.
+    name = next((out / "cells").glob("*.npy")).stem
+    (out / f"cells/{name}.json").rename(out / f"cells/{name}.failed.json")
+    found = chance(plan(read_sweep(tmp_path / "sweep.toml")), out / "cells")
+    assert (found.converged, found.left_out) == (4, 1)
 
 
 @pytest.mark.parametrize(

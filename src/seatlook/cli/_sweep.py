@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from seatlook.cli._output import Json, note, progress, say, table
+from seatlook.cli._output import Json, note, progress, say, show_json, table
 from seatlook.cli._run import DryRun, Out
 from seatlook.errors import InputError
 
@@ -32,8 +33,8 @@ def sweep(
 
     Each cell is solved, judged and drawn on its own and kept under a name that stands for its
     content, so a sweep that was stopped goes on where it was. Leaves cells/, sweep.csv and, where
-    the file has [irregularity], inputs.csv and a map of the probability that W2 is above 1. Ends
-    with 3 if a cell failed, and lists those.
+    the file has [irregularity], inputs.csv and map and table of the probability that W2 is above
+    1. Ends with 3 if a cell failed, and lists those.
 
     Example: seatlook sweep sweep.toml --out out/sweep --workers 2
 
@@ -97,24 +98,59 @@ def _summarise(cells: Sequence[Cell], out: Path, *, json: bool) -> None:
     heads = list(dict.fromkeys(key for row in found for key in row))
     columns = [[row.get(head) for head in heads] for row in found]
     write_table(out / "sweep.csv", heads, columns)
-    table(heads, columns, json=json)
-    for number, (words, group) in enumerate(_groups(cells).items()):
-        if len([r for r in summary.rows(group, out / "cells") if r["status"] == "converged"]) < 4:
-            continue
-        causes = summary.causes(group, out / "cells")
-        name = f"-{number}" if number else ""
-        write_table(
-            out / f"inputs{name}.csv",
-            ["input", "rank_correlation", "rank_correlation_of_size", "noise"],
-            [[c.input, c.correlation, c.of_size, c.noise] for c in causes],
+    chances = [
+        {"of": words, **row}
+        for number, (words, group) in enumerate(_groups(cells).items())
+        for row in _irregular(words, group, out, f"-{number}" if number else "")
+    ]
+    if json:
+        show_json({"cells": found, "probability": chances})
+        return
+    table(heads, columns, json=False)
+    if chances:
+        sys.stdout.write("\n")
+        table(list(chances[0]), [list(row.values()) for row in chances], json=False)
+
+
+def _irregular(
+    words: str, cells: Sequence[Cell], out: Path, ending: str
+) -> list[dict[str, str | int | float]]:
+    """Leave the probability of wrinkles and its causes; return its zones, and say what counts."""
+    from seatlook.io import write_table
+    from seatlook.study import summary
+    from seatlook.study.probability import chance, draw_chance
+
+    try:
+        found = chance(cells, out / "cells")
+    except InputError as error:
+        say(f"{words}: {error}")
+        return []
+    zones = draw_chance(cells, found, out / f"probability{ending}.png")
+    write_table(
+        out / f"probability{ending}.csv", list(zones[0]), [list(row.values()) for row in zones]
+    )
+    if found.left_out:
+        say(
+            f"{words}: {found.left_out} of {found.covers} covers are left out of the probability, "
+            "because they did not converge; they are often the most wrinkled. What they could "
+            f"change stands beside it in probability{ending}.csv"
         )
-        count = summary.draw_probability(group, out / "cells", out / f"probability{name}.png")
-        strongest = causes[0]
-        says = "matters most" if strongest.matters else "is strongest, but not above the noise"
-        note(
-            f"{words}: {count} of {len(group)} covers converged; {strongest.input} {says} "
-            f"(rank correlation {strongest.strength:.2f} in size, noise {strongest.noise:.2f})"
-        )
+    if found.converged < summary.FEWEST:
+        say(f"{words}: {found.converged} covers are too few to tell which input matters")
+        return zones
+    causes = summary.causes(cells, out / "cells")
+    write_table(
+        out / f"inputs{ending}.csv",
+        ["input", "rank_correlation", "rank_correlation_of_size", "noise"],
+        [[c.input, c.correlation, c.of_size, c.noise] for c in causes],
+    )
+    strongest = causes[0]
+    says = "matters most" if strongest.matters else "is strongest, but not above the noise"
+    note(
+        f"{words}: {found.converged} of {found.covers} covers converged; {strongest.input} {says} "
+        f"(rank correlation {strongest.strength:.2f} in size, noise {strongest.noise:.2f})"
+    )
+    return zones
 
 
 def _groups(cells: Sequence[Cell]) -> dict[str, list[Cell]]:

@@ -94,6 +94,15 @@ def finished(cell: Cell, folder: Path) -> bool:
     return (folder / f"{cell.name}.json").exists()
 
 
+def failed(cell: Cell, folder: Path) -> bool:
+    """Whether the last try of a cell ended in an error."""
+    return not finished(cell, folder) and _failure(folder, cell.name).exists()
+
+
+def _failure(folder: Path, name: str) -> Path:
+    return folder / f"{name}.failed.json"
+
+
 def run_cell(name: str, spec: str, folder: str) -> str:
     """Solve, judge and draw one cell; return "" or what went wrong.
 
@@ -103,14 +112,14 @@ def run_cell(name: str, spec: str, folder: str) -> str:
     out = Path(folder)
     for half in out.glob(f".{name}*"):
         half.unlink()  # of an earlier run that was killed while it wrote
-    failed = out / f"{name}.failed.json"
+    failure = _failure(out, name)
     try:
         _run(name, json.loads(spec), out)
     except Exception as error:  # one bad cell must not stop the others
         what = f"{type(error).__name__}: {error}"
-        files.write_text(failed, json.dumps({"cell": name, "error": what}, indent=1) + "\n")
+        files.write_text(failure, json.dumps({"cell": name, "error": what}, indent=1) + "\n")
         return what
-    failed.unlink(missing_ok=True)
+    failure.unlink(missing_ok=True)
     return ""
 
 

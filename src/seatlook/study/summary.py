@@ -1,4 +1,4 @@
-"""What a sweep found: one table of all cells, a probability map, the inputs that matter most."""
+"""What a sweep found: one table of all cells, and the inputs that matter most."""
 
 from __future__ import annotations
 
@@ -10,15 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from seatlook import io, pbr
-from seatlook.assembly import assemble
 from seatlook.errors import InputError
-from seatlook.model import FloatArray, Solution
-from seatlook.solver import solve
 from seatlook.study.cell import Cell, finished
 from seatlook.study.irregularity import rank_correlation
 
 MEASURES = ("w2_mean", "w2_p95", "w2_area_share", "w_stretch_mean", "w_compression_mean")
+FEWEST = 4  # converged covers from which ranks mean something
 OUTPUT = "w2_mean"  # over the whole cover; the share above 1 is often 0 in every cell
 
 
@@ -81,12 +78,14 @@ def causes(cells: Sequence[Cell], folder: Path) -> tuple[Cause, ...]:
     Raises
     ------
     InputError
-        Fewer than 4 of them.
+        Fewer than ``FEWEST`` of them.
     """
     good = [r for r in rows(cells, folder) if r["status"] == "converged"]
     names = [i["name"] for i in json.loads(cells[0].spec)["inputs"]]
-    if len(good) < 4:
-        raise InputError.single("irregularity", got=f"{len(good)} converged", expected="4 or more")
+    if len(good) < FEWEST:
+        raise InputError.single(
+            "irregularity", got=f"{len(good)} converged", expected=f"{FEWEST} or more"
+        )
     drawn = np.array([[row[name] for name in names] for row in good])
     output = np.array([row[OUTPUT] for row in good])
     found, noise = rank_correlation(drawn, output)
@@ -96,31 +95,3 @@ def causes(cells: Sequence[Cell], folder: Path) -> tuple[Cause, ...]:
         for name, value, size in zip(names, found, sizes, strict=True)
     ]
     return tuple(sorted(listed, key=lambda c: -c.strength))
-
-
-def probability(cells: Sequence[Cell], folder: Path) -> tuple[FloatArray, int]:
-    """Share of the converged cells whose W2 is above 1, (m,) face by face, and their number."""
-    good = {r["cell"] for r in rows(cells, folder) if r["status"] == "converged"}
-    above = [np.load(folder / f"{c.name}.npy") > 1 for c in cells if c.name in good]
-    if not above:
-        raise InputError.single("irregularity", got="no converged cell", expected="one or more")
-    return np.asarray(np.mean(above, axis=0)), len(above)
-
-
-def draw_probability(cells: Sequence[Cell], folder: Path, path: Path) -> int:
-    """Draw the probability that W2 is above 1 on the cover as drawn; return the number of cells."""
-    spec = json.loads(cells[0].spec)
-    scene = io.load_scene(spec["scene"], changes=spec["set"])
-    share, count = probability(cells, folder)
-    solution: Solution = solve(assemble(scene))
-    picture = pbr.render_map(
-        solution,
-        share,
-        camera=scene.cameras[0],
-        title=f"Probability that W2 is above 1, {count} of {len(cells)} covers that converged",
-        unit="1",
-        value_range=(0.0, 1.0),
-        colormap="cividis",
-    )
-    picture.save(path)
-    return count
