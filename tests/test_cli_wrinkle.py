@@ -168,7 +168,7 @@ def test_two_results_are_compared_in_one_range(waves, tmp_path, capsys):
     assert zone["difference"] == pytest.approx(zone["mean"] - zone["other"])
     assert zone["mean"] / zone["other"] == pytest.approx(6.0, rel=0.05)
     maps = {p.stem for p in (tmp_path / "maps").iterdir()}
-    assert maps >= {"w2_this", "w2_other", "w2_difference", "w2_net", "checker"}
+    assert maps == {"w2_this", "w2_other", "w2_difference", "w2_net"} | MAPS | TEXTURE
     assert {p.name for p in tmp_path.glob("*.csv")} == {
         "zones.csv",
         "worst.csv",
