@@ -37,6 +37,7 @@ from vtkmodules.vtkRenderingOpenGL2 import (
 from seatlook.errors import RenderError
 from seatlook.model import Camera, FloatArray, IntArray
 from seatlook.pbr.backend import offscreen_backend
+from seatlook.pbr.kernels import surface
 
 FaceIds = npt.NDArray[np.int32]
 
@@ -97,11 +98,10 @@ class FaceWindow:
         with _errors_raised():
             self._window.Render()
         picture = self._read(size)
-        number, drawn = picture[::-1, :, 0], picture[::-1, :, 3] > 0
-        whole = (number >= 0) & (number <= len(faces)) & (number == np.rint(number))
-        if not (whole & (drawn == (number > 0))).all():
+        ids = np.empty(picture.shape[:2], dtype=np.int32)
+        if not surface.face_numbers(picture, len(faces), ids):
             raise RenderError("the face shader did not run: the frame holds no face numbers")
-        return number.astype(np.int32) - 1
+        return ids
 
     def describe(self) -> str:
         """Return window class and GL renderer, for ``seatlook doctor``."""

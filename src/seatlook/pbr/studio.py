@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError, RenderError, did_you_mean
-from seatlook.model import Appearance, Camera, FloatArray, Light, Rig, Solution, Thread
+from seatlook.model import Appearance, Camera, Light, Rig, Solution, Thread
 from seatlook.pbr.around import Surroundings, camera_key
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
@@ -86,8 +86,9 @@ class Studio:
         seen = self._visibility(rig, camera, level, ids)
         width, height = camera.size
         ev = ev100(rig)
-        radiance = np.zeros((height, width, 3))
-        shade.shade(
+        white = white_of(rig)
+        radiance = np.empty((height, width, 3), dtype=np.float32)
+        brightest = shade.shade(
             self.surface.mesh,
             eye_of(camera, level.factor),
             ids,
@@ -96,21 +97,29 @@ class Studio:
             self._surroundings.light(rig, look, level, camera, ids),
             seen,
             level.factor,
+            _CARD * 2.5 * 2.0**ev / np.pi * white,
             radiance,
         )
-        _check(radiance, ids, seen, camera)
-        share = (ids >= 0).reshape(height, level.factor, width, level.factor).mean(axis=(1, 3))
-        radiance += (1 - share[..., None]) * _CARD * 2.5 * 2.0**ev / np.pi * white_of(rig)
-        cover = (ids >= 0) & (ids < self.surface.opaque)
-        cover_share = cover.reshape(height, level.factor, width, level.factor).mean(axis=(1, 3))
+        _check(brightest, ids, seen, camera)
         return Image(
-            radiance=radiance.astype(np.float32),
+            radiance=radiance,
             ev100=ev,
             lux=MappingProxyType(lux_at_seat(rig)),
-            white=white_of(rig),
+            white=white,
             camera=camera,
-            cover=cover_share.astype(np.float32),
+            cover=self._cover(camera, level.factor),
         )
+
+    def _cover(self, camera: Camera, factor: int) -> npt.NDArray[np.float32]:
+        """Share of each pixel that shows the cover, (h, w)."""
+
+        def make() -> npt.NDArray[np.float32]:
+            share = np.empty(camera.size[::-1], dtype=np.float32)
+            surface.covered(self.faces(camera, factor), self.surface.opaque, factor, share)
+            share.flags.writeable = False
+            return share
+
+        return np.asarray(self._kept(("cover", camera_key(camera), factor), make))
 
     def faces(self, camera: Camera, factor: int = 1) -> npt.NDArray[np.int32]:
         """Face of the drawn mesh seen by each sample, (h factor, w factor), -1 for none.
@@ -167,9 +176,9 @@ class Studio:
     def _shadow(
         self, rig: Rig, k: int, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
     ) -> npt.NDArray[np.uint8]:
-        share = np.ones(ids.shape)
+        share = np.full(ids.shape, 255, dtype=np.uint8)
         if level.rays == 0:
-            return np.full(ids.shape, 255, dtype=np.uint8)
+            return share
         rays.shadows(
             self._bvh,
             self.surface.mesh,
@@ -182,7 +191,7 @@ class Studio:
             _edge_width(rig.lights[k], camera),
             share,
         )
-        return np.rint(255 * share).astype(np.uint8)
+        return share
 
     def _look(self, appearance: Looks) -> shade.Look:
         cover = self.solution.cover
@@ -309,10 +318,10 @@ def eye_of(camera: Camera, factor: int) -> surface.Eye:
     return surface.Eye(np.array(camera.position), first, step * right, step * down)
 
 
-def _check(radiance: FloatArray, ids: np.ndarray, seen: np.ndarray, camera: Camera) -> None:
-    if not np.isfinite(radiance).all():
+def _check(brightest: float, ids: np.ndarray, seen: np.ndarray, camera: Camera) -> None:
+    if not np.isfinite(brightest):
         raise RenderError(f"camera {camera.name}: the picture holds values that are not finite")
-    if radiance.max() <= 0 and (seen[:, ids >= 0] > 0).any():
+    if brightest <= 0 and (seen[:, ids >= 0] > 0).any():
         raise RenderError(f"camera {camera.name}: the picture is black though a light reaches it")
 
 

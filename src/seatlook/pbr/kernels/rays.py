@@ -140,7 +140,7 @@ def _share_seen(bvh, lights, k, start, shift, first, step, total, stack):
 
 @njit(cache=True)
 def shadows(bvh, mesh, eye, ids, lights, k, factor, rays, reach, out):
-    """Share of light k that each sample sees, into ``out`` like ``ids``.
+    """Share of light k [1/255] that each sample sees, into ``out`` like ``ids``.
 
     Where a pixel and its neighbours within ``reach`` agree, one ray tells; near a shadow's edge
     every sample sends ``rays`` to its own stratified points of the light's disc.
@@ -162,10 +162,11 @@ def shadows(bvh, mesh, eye, ids, lights, k, factor, rays, reach, out):
                 if ids[j, i] < 0:
                     continue
                 if not edge:
-                    out[j, i] = 1.0 if state[y, x] == _LIT else 0.0
+                    out[j, i] = 255 if state[y, x] == _LIT else 0
                     continue
                 start = _start(mesh, eye, ids[j, i], i, j)
-                out[j, i] = _share_seen(bvh, lights, k, start, shift, q, step, rays * step, stack)
+                share = _share_seen(bvh, lights, k, start, shift, q, step, rays * step, stack)
+                out[j, i] = np.rint(255.0 * share)
 
 
 @njit(cache=True)

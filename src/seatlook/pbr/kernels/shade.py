@@ -281,18 +281,19 @@ def _alike(mesh, ids, visibility, reach, x, y):
 
 
 @njit(cache=True)
-def shade(mesh, eye, ids, look, lights, around, visibility, factor, out):
-    """Mean radiance of ``factor`` x ``factor`` samples added to each pixel of ``out`` (h, w, 3).
+def shade(mesh, eye, ids, look, lights, around, visibility, factor, backdrop, out):
+    """Mean radiance of ``factor`` x ``factor`` samples into each pixel of ``out`` (h, w, 3).
 
-    ``ids`` (h factor, w factor): face per sample, -1 for none; ``visibility`` likewise, (k, ., .),
-    in 1/255. Returns the number of samples shaded: of 2 x 2 that are alike, only the diagonal is,
-    each for an area twice as large, or one for all where the surface has no relief.
+    ``ids`` (h factor, w factor): face per sample, -1 for none, where ``backdrop`` (3,) is seen;
+    ``visibility`` likewise, (k, ., .), in 1/255. Of 2 x 2 samples that are alike, only the diagonal
+    is shaded, each for an area twice as large, or one for all where the surface has no relief.
+    Returns the greatest radiance of the surface, nan where one is not finite.
     """
-    work = np.zeros((3, 3))
+    work, total, brightest = np.zeros((3, 3)), np.zeros(3), 0.0
     visible = np.ones(len(lights.near))
     spread = np.sqrt(dot(row_of(eye.right), row_of(eye.right)))
     spread /= np.sqrt(dot(row_of(eye.first), row_of(eye.first)))
-    count, near_seam = 0, reach(look.thread)
+    near_seam = reach(look.thread)
     height, width = ids.shape[0] // factor, ids.shape[1] // factor
     columns = -(-width // _TILE)
     # By tiles: neighbours lie on the same faces, whose vertices are then still at hand.
@@ -302,6 +303,7 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, out):
         x = tile % columns * _TILE + inside % _TILE
         if y >= height or x >= width:
             continue
+        total[:], missed = 0.0, 0
         first = ids[factor * y, factor * x]
         pair = factor == 2 and first >= 0
         pair = pair and _alike(mesh, ids, visibility, near_seam, 2 * x, 2 * y)
@@ -319,8 +321,8 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, out):
             i, j = x * factor + q % factor, y * factor + q // factor
             f = ids[j, i]
             if f < 0:
+                missed += 1
                 continue
-            count += 1
             point = q
             if not one:
                 ray = ray_through(eye, i, j)
@@ -336,5 +338,10 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, out):
                 visible[k] = visibility[k, j, i] / 255.0
             sample(mesh, look, lights, around, f, hit, place, point, visible, work)
             for c in range(3):
-                out[y, x, c] += weight * work[0, c]
-    return count
+                total[c] += weight * work[0, c]
+        for c in range(3):
+            # What is not a number is kept: nothing is greater.
+            if total[c] > brightest or total[c] != total[c]:
+                brightest = total[c]
+            out[y, x, c] = total[c] + missed * weight * backdrop[c]
+    return brightest

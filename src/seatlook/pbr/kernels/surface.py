@@ -142,6 +142,35 @@ def distances(mesh, eye, ids, out):
     return front
 
 
+@njit(cache=True)
+def covered(ids, faces, factor, out):
+    """Share of each pixel of ``out`` (h, w) that shows one of the first ``faces`` faces."""
+    for y in range(out.shape[0]):
+        for x in range(out.shape[1]):
+            count = 0
+            for q in range(factor * factor):
+                f = ids[y * factor + q // factor, x * factor + q % factor]
+                count += 0 <= f < faces
+            out[y, x] = count / (factor * factor)
+
+
+@njit(cache=True)
+def face_numbers(frame, faces, out):
+    """Face per sample into ``out`` (h, w), first row at the top, of numbers from 1 in ``frame``.
+
+    ``frame`` (h, w, 4): number in the first channel, not 0 in the last where a face is drawn.
+    Returns whether all are whole numbers up to ``faces``.
+    """
+    good, height = True, out.shape[0]
+    for j in range(height):
+        for i in range(out.shape[1]):
+            number = frame[height - 1 - j, i, 0]
+            whole = int(number) if 0.0 <= number <= faces else -1
+            good &= whole == number and (frame[height - 1 - j, i, 3] > 0.0) == (whole > 0)
+            out[j, i] = whole - 1
+    return good
+
+
 @leaf()
 def lift(mesh, f, b1, b2, p):
     """Point moved onto the surface that the vertex normals imply; Hanika 2021.
