@@ -32,7 +32,7 @@ def pattern():
     whole = (DATA / "seat_cushion_demo_aama.dxf").read_bytes()
     start = whole.index(b"BLOCK\n", whole.index(b"CENTER_ONE"))
     stop = whole.index(b"FRONT_ONE") - 100
-    stop = whole.rindex(b"ENDBLK", 0, stop)
+    stop = whole.index(b"BLOCK\n", whole.rindex(b"ENDBLK", 0, stop))
     return whole[:start] + whole[stop:]
 
 

@@ -332,3 +332,19 @@ def test_truncated_file_is_refused_or_complete(write, problems):
     whole = dxf({"A": [polyline("1", SQUARE), GRAIN]})
     for length in range(40, len(whole) - 20, 37):
         assert problems(read_dxf, write("a.dxf", whole[:length]))
+
+
+def test_a_piece_that_the_library_leaves_out_is_not_dropped_silently(write, problems):
+    piece = [polyline("1", SQUARE), GRAIN]
+    whole = dxf({"A": piece, "B": piece})
+    path = write("a.dxf", whole.replace("0\nENDBLK\n", "", 1))
+    assert problems(read_dxf, path) == [
+        "a.dxf: file: got Missing required ENDBLK, ignoring content, expected a whole DXF file"
+    ]
+
+
+def test_what_the_library_complains_of_is_told_with_the_file(write):
+    whole = dxf({"A": [polyline("1", SQUARE), GRAIN]})
+    outside = whole.replace("ENDSEC\n", "ENDSEC\n0\nLINE\n8\n1\n", 1)
+    with pytest.warns(InputWarning, match=r"odd\.dxf: .*found tags outside a SECTION"):
+        read_dxf(write("odd.dxf", outside))

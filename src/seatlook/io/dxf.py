@@ -34,6 +34,7 @@ from seatlook.io._dxf_entities import (
     read_polylines,
     read_texts,
 )
+from seatlook.io._dxf_log import listening, loses_a_piece
 from seatlook.io._outline import (
     MEETING_MM,
     Chain,
@@ -113,10 +114,17 @@ def _panels(
 
 def _open(path: Path) -> Any:
     read_file(path)
-    try:
-        return ezdxf.filemanagement.readfile(path)
-    except Exception as error:  # on damaged files the library raises whatever it stumbles over
-        raise _refusal(path, error) from error
+    with listening() as said:
+        try:
+            document = ezdxf.filemanagement.readfile(path)
+        except Exception as error:  # on damaged files it raises whatever it stumbles over
+            raise _refusal(path, error) from error
+    lost = [message for message in said if loses_a_piece(message)]
+    if lost:
+        raise InputError.single("file", got=lost[0], expected="a whole DXF file", file=path)
+    for message in dict.fromkeys(said):
+        warnings.warn(f"{path}: {message}", InputWarning, 4)
+    return document
 
 
 def _refusal(path: Path, error: Exception) -> InputError:
