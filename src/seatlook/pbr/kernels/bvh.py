@@ -49,14 +49,14 @@ def build(vertices: npt.NDArray[np.float64], faces: npt.NDArray[np.int64]) -> Bv
     )
 
 
-@njit(cache=True)
+@leaf()
 def _grow(low, high, box_low, box_high):
     for k in range(3):
         low[k] = min(low[k], box_low[k])
         high[k] = max(high[k], box_high[k])
 
 
-@njit(cache=True)
+@leaf()
 def _half_area(low, high):
     x, y, z = high[0] - low[0], high[1] - low[1], high[2] - low[2]
     return x * y + y * z + z * x
@@ -91,7 +91,7 @@ def _best_split(order, start, stop, centre, low, high, axis, c0, scale):
     return best, where
 
 
-@njit(cache=True)
+@leaf()
 def _partition(order, start, stop, centre, axis, c0, scale, where):
     i, j = start, stop
     while i < j:
@@ -180,7 +180,14 @@ def _inverse(d):
 
 @leaf()
 def occluded(bvh, ox, oy, oz, dx, dy, dz, near, far, stack):
-    """Whether anything lies on the ray between ``near`` and ``far``."""
+    """Whether anything lies on the ray between ``near`` and ``far``.
+
+    Neighbours hide behind the same triangle: the one that hid the last ray is tried first.
+    """
+    if stack[-1] >= 0:
+        t, _, _ = _triangle(bvh, stack[-1], ox, oy, oz, dx, dy, dz)
+        if near < t < far:
+            return True
     ix, iy, iz = _inverse(dx), _inverse(dy), _inverse(dz)
     top = 1
     stack[0] = 0
@@ -202,6 +209,7 @@ def occluded(bvh, ox, oy, oz, dx, dy, dz, near, far, stack):
         for i in range(bvh.first[node], bvh.first[node] + n):
             t, _, _ = _triangle(bvh, i, ox, oy, oz, dx, dy, dz)
             if near < t < far:
+                stack[-1] = i
                 return True
     return False
 
@@ -241,5 +249,8 @@ def nearest(bvh, ox, oy, oz, dx, dy, dz, near, stack):
 
 @njit(cache=True)
 def new_stack():
-    """Scratch for one ray query: one entry waits on each level, and one is in hand."""
-    return np.empty(_DEPTH + 2, np.int64)
+    """Scratch for the rays of one tree: an entry waits on each level, and one is in hand.
+
+    The last one is the triangle that hid a ray, -1 before any has.
+    """
+    return np.full(_DEPTH + 3, -1)

@@ -30,18 +30,36 @@ _EMPTY, _HIDDEN, _AWAY, _LIT, _GRAZING = 0, 1, 2, 3, 4
 
 
 @leaf()
-def _to_disc(lights, k, p, a, b):
-    """Unit direction to point (a, b), in the unit square, of light k's disc; its distance."""
+def _disc(lights, k, p):
+    """Light k seen from ``p``: unit direction, vector to its middle, two radii, whether it is far.
+
+    Of a far light only the directions count: its middle is one away.
+    """
     l, _ = arriving(lights, k, p)
     t, s = across(l)
-    r, phi = np.sqrt(a), 2.0 * np.pi * b
-    x, y = r * np.cos(phi), r * np.sin(phi)
     if lights.near[k] == 0:
         half = np.tan(0.5 * lights.size[k])
-        return unit(along(along(l, half * x, t), half * y, s)), np.inf
-    to = minus(row(lights.vector, k), p)
-    d = along(along(to, lights.size[k] * x, t), lights.size[k] * y, s)
-    return unit(d), np.sqrt(dot(d, d))
+        return l, l, along((0.0, 0.0, 0.0), half, t), along((0.0, 0.0, 0.0), half, s), True
+    to, half = minus(row(lights.vector, k), p), lights.size[k]
+    return l, to, along((0.0, 0.0, 0.0), half, t), along((0.0, 0.0, 0.0), half, s), False
+
+
+@leaf()
+def _to_disc(disc, a, b):
+    """Unit direction to point (a, b), in the unit square, of a disc; its distance."""
+    _, to, t, s, far = disc
+    r, phi = np.sqrt(a), 2.0 * np.pi * b
+    d = along(along(to, r * np.cos(phi), t), r * np.sin(phi), s)
+    length = np.sqrt(dot(d, d))
+    scale = 1.0 / length
+    return (d[0] * scale, d[1] * scale, d[2] * scale), np.inf if far else length
+
+
+@leaf()
+def _to_middle(disc):
+    """Unit direction to the middle of a disc; its distance."""
+    l, to, _, _, far = disc
+    return l, np.inf if far else np.sqrt(dot(to, to))
 
 
 @leaf()
@@ -64,30 +82,49 @@ def _start(mesh, eye, f, i, j):
     return lift(mesh, f, b1, b2, p), plane, n
 
 
+@leaf()
+def _state(bvh, mesh, eye, f, i, j, lights, k, stack):
+    """What one ray from sample (i, j) to the middle of light k tells."""
+    p, plane, n = _start(mesh, eye, f, i, j)
+    l, far = _to_middle(_disc(lights, k, p))
+    angle, c = angle_of(lights, k, p), dot(n, l)
+    if c <= -angle:
+        return _AWAY
+    if c < angle and angle >= SMALL:
+        return _GRAZING
+    return _LIT if _reaches(bvh, p, plane, l, far, stack) else _HIDDEN
+
+
+@leaf()
+def _of_neighbours(state, x, y):
+    """State on which the four pixels beside this one agree, ``_EMPTY`` where they do not."""
+    if x == 0 or y == 0 or x == state.shape[1] - 1 or y == state.shape[0] - 1:
+        return _EMPTY
+    here = state[y, x - 1]
+    same = here == state[y, x + 1] and here == state[y - 1, x] and here == state[y + 1, x]
+    return here if same else _EMPTY
+
+
 @njit(cache=True)
 def _first_look(bvh, mesh, eye, ids, lights, k, factor, state):
-    """One ray per pixel to the middle of the light."""
+    """One ray per pixel to the middle of the light, on a chequerboard.
+
+    The pixels between look where their neighbours do not agree.
+    """
     stack = new_stack()
-    for y in range(state.shape[0]):
-        for x in range(state.shape[1]):
-            state[y, x] = _EMPTY
-            for q in range(factor * factor):
-                i, j = x * factor + q % factor, y * factor + q // factor
-                if ids[j, i] < 0:
-                    continue
-                p, plane, n = _start(mesh, eye, ids[j, i], i, j)
-                l, far = _to_disc(lights, k, p, 0.0, 0.0)
-                angle = angle_of(lights, k, p)
-                c = dot(n, l)
-                if c <= -angle:
-                    state[y, x] = _AWAY
-                elif c < angle and angle >= SMALL:
-                    state[y, x] = _GRAZING
-                elif _reaches(bvh, p, plane, l, far, stack):
-                    state[y, x] = _LIT
-                else:
-                    state[y, x] = _HIDDEN
-                break
+    state[:] = _EMPTY
+    for between in range(2):
+        for y in range(state.shape[0]):
+            for x in range((y + between) % 2, state.shape[1], 2):
+                for q in range(factor * factor):
+                    i, j = x * factor + q % factor, y * factor + q // factor
+                    if ids[j, i] < 0:
+                        continue
+                    if between:
+                        state[y, x] = _of_neighbours(state, x, y)
+                    if state[y, x] == _EMPTY:
+                        state[y, x] = _state(bvh, mesh, eye, ids[j, i], i, j, lights, k, stack)
+                    break
 
 
 @njit(cache=True)
@@ -119,14 +156,15 @@ def _share_seen(bvh, lights, k, start, shift, first, step, total, stack):
     """
     p, plane, n = start
     seen = count = 0
-    l, far = _to_disc(lights, k, p, 0.0, 0.0)
+    disc = _disc(lights, k, p)
+    l, far = _to_middle(disc)
     c, angle = dot(n, l), angle_of(lights, k, p)
     if c <= -angle:
         return 0.0
     for index in range(first, total, step):
         a = (index + shift[0]) / total
         b = (shift[1] + 0.7548776662466927 * index) % 1.0
-        d, far = _to_disc(lights, k, p, a, b)
+        d, far = _to_disc(disc, a, b)
         if dot(n, d) > 0.0:
             count += 1
             seen += _reaches(bvh, p, plane, d, far, stack)
@@ -193,7 +231,7 @@ def lit(bvh, points, normals, lights, out):
         p, n = row(points, i), row(normals, i)
         o = along(p, 5 * ABOVE, n)
         for k in range(len(out)):
-            l, far = _to_disc(lights, k, p, 0.0, 0.0)
+            l, far = _to_middle(_disc(lights, k, p))
             out[k, i] = 1.0 if dot(l, n) > 0.0 and _reaches(bvh, o, n, l, far, stack) else 0.0
 
 
