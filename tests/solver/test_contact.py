@@ -101,3 +101,27 @@ def test_definite_hessian_is():
     full = contact.hessian(x).toarray()
     np.testing.assert_allclose(full, full.T, atol=1e-9)
     assert np.linalg.eigvalsh(contact.hessian(x, definite=True).toarray()).min() > -1e-9
+
+
+def test_a_shape_seen_before_answers_as_one_seen_first():
+    """Vertices move one by one, or only settle: what was looked up before must not stay."""
+    n = 60
+    rng = np.random.default_rng(4)
+    state = np.zeros((n + n // 3, 3))
+    state[:n] = around_cylinder(n)
+    state[:5, 2] += 0.5  # out of reach
+    state[5:10] *= 1.03  # too far at first
+    args = ROUND, np.full(n, 1e-3), np.full(n, 1e6), np.full(n, 1e-4)
+    old = FoamContact(*args)
+    old.value(state, np.zeros_like(state))
+    for _ in range(6):
+        moved = rng.random(n) < 0.3
+        state[:n][moved] += rng.normal(scale=1e-3, size=(int(moved.sum()), 3))
+        state[n:] = rng.normal(scale=3e-3, size=(n // 3, 3))
+        new, one, two = FoamContact(*args), np.zeros_like(state), np.zeros_like(state)
+        assert old.value(state, one) == new.value(state, two)
+        np.testing.assert_array_equal(one, two)
+        old.update(state)
+        new.update(state)
+        np.testing.assert_array_equal(old.force, new.force)
+        np.testing.assert_array_equal(old.blocks(state), new.blocks(state))

@@ -178,6 +178,15 @@ def test_singular_matrix_is_an_error():
         Factor(csc_array((4, 4)))
 
 
+def test_matrices_of_one_pattern_share_its_order_alone():
+    first, second = csc_array(chain(50)), csc_array(3.0 * chain(50, ends=7.0))
+    one, two = Factor(first), Factor(second)
+    assert one._cholesky._pattern is two._cholesky._pattern
+    right = np.arange(50.0)
+    for matrix, factor in ((first, one), (second, two)):
+        np.testing.assert_allclose(matrix @ factor.column(right), right, atol=1e-10)
+
+
 def test_kernels_equal_numpy():
     rng = np.random.default_rng(0)
     a, b = rng.normal(size=(2, 50, 3))

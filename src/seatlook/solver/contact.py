@@ -75,31 +75,26 @@ class FoamContact:
         n = len(area)
         self.force, self.depth, self.normal = np.zeros(n), np.zeros(n), np.zeros((n, 3))
         self._blocks, self._firm = np.zeros((n, 3, 3)), np.zeros((2, n))
+        # The same shape is asked about several times: value, forces, state.
+        self._seen, self._found = np.full((n, 3), np.nan), np.empty((n, 5))
 
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N]."""
         pull = settled_part(gradient, len(self.area)) if len(x) > len(self.area) else self._firm[1]
+        settled = self._look(x)
         return float(
             kernel.contact_value(
-                x,
-                self.field.coefficients,
-                self.field.grid,
-                self.half_thickness,
-                self._settled(x),
-                self.per_vertex,
-                gradient,
-                pull,
+                self._found, self.half_thickness, settled, self.per_vertex, gradient, pull
             )
         )
 
     def update(self, x: FloatArray) -> None:
         """Refresh normal force, normal and depth of the springs at ``x``."""
+        settled = self._look(x)
         kernel.contact_state(
-            x,
-            self.field.coefficients,
-            self.field.grid,
+            self._found,
             self.half_thickness,
-            self._settled(x),
+            settled,
             self.per_vertex,
             self.force,
             self.normal,
@@ -136,21 +131,35 @@ class FoamContact:
 
     def blocks(self, x: FloatArray, *, definite: bool = False) -> FloatArray:
         """Diagonal blocks (n, 3, 3) of the Hessian; overwritten by the next call."""
+        settled = self._look(x)
         kernel.contact_blocks(
             x,
             self.field.coefficients,
             self.field.grid,
+            self._found,
             self.half_thickness,
-            self._settled(x),
+            settled,
             self.per_vertex,
             definite,
             self._blocks,
         )
         return self._blocks
 
-    def _settled(self, x: FloatArray) -> FloatArray:
+    def _look(self, x: FloatArray) -> FloatArray:
+        """Look the distances up at ``x``; return the settlements there."""
         n = len(self.area)
-        return settled_part(x, n) if len(x) > n else self._firm[0]
+        settled = settled_part(x, n) if len(x) > n else self._firm[0]
+        field = self.field
+        kernel.look(
+            x,
+            field.coefficients,
+            field.grid,
+            self.half_thickness,
+            settled,
+            self._seen,
+            self._found,
+        )
+        return settled
 
 
 def diagonal_blocks(blocks: FloatArray) -> csc_array:

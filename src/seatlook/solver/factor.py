@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from seatlook.errors import SolverError
-from seatlook.model import FloatArray
+from seatlook.model import FloatArray, IntArray
+from seatlook.solver.multifrontal import Cholesky, Pattern
+
+_KEPT = 6  # patterns: those of a process, while ties join one after the other
+_patterns: OrderedDict[tuple[bytes, bytes], tuple[Pattern, IntArray]] = OrderedDict()
 
 
 class Preconditioner(Protocol):
@@ -48,30 +52,45 @@ class Renewed:
 
 
 class Factor:
-    """Factor of a symmetric positive definite matrix, (n, n) for each coordinate or (3n, 3n)."""
+    """Factor of a symmetric positive definite matrix, (n, n) for each coordinate or (3n, 3n).
+
+    Raises
+    ------
+    SolverError   the matrix is not positive definite
+    """
 
     def __init__(self, matrix: csc_array) -> None:
-        try:
-            self._factor = splu(
-                matrix,
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
-        except RuntimeError as error:
-            raise SolverError(f"stiffness matrix cannot be factored: {error}") from error
+        pattern, lower = _pattern(matrix)
+        self._cholesky = Cholesky(pattern)
+        if not self._cholesky.factor(matrix.data[lower].reshape(-1, 1, 1)):
+            raise SolverError("stiffness matrix cannot be factored: it is not positive definite")
         self._size = matrix.shape[0]
 
     def solve(self, right: FloatArray, out: FloatArray) -> None:
         """Solve for (n, 3) right-hand sides."""
         if self._size == len(right):
-            out[...] = self._factor.solve(right)
+            out[...] = self._cholesky.solve(right)
         else:
-            out[...] = self._factor.solve(right.ravel()).reshape(-1, 3)
+            out[...] = self._cholesky.solve(right.reshape(-1, 1)).reshape(-1, 3)
 
     def column(self, right: FloatArray) -> FloatArray:
         """Solve for one right-hand side (n,)."""
-        return np.asarray(self._factor.solve(right))
+        return self._cholesky.solve(right[:, None])[:, 0]
+
+
+def _pattern(matrix: csc_array) -> tuple[Pattern, IntArray]:
+    """Order of elimination, from an earlier matrix if it can be, and which entries are needed."""
+    key = matrix.indptr.tobytes(), matrix.indices.tobytes()
+    if key not in _patterns:
+        rows = matrix.indices.astype(np.int64)
+        columns = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
+        lower = np.flatnonzero(rows >= columns)
+        pattern = Pattern(rows[lower], columns[lower], matrix.shape[0])
+        _patterns[key] = pattern, lower
+        if len(_patterns) > _KEPT:
+            _patterns.popitem(last=False)
+    _patterns.move_to_end(key)
+    return _patterns[key]
 
 
 class SplitFactor:

@@ -14,7 +14,7 @@ from seatlook.errors import SolverError
 from seatlook.model import FloatArray, IntArray
 from seatlook.solver.elastic import ElasticSheet
 from seatlook.solver.kernels import nearest as kernel
-from seatlook.solver.multifrontal import Cholesky
+from seatlook.solver.multifrontal import Cholesky, Pattern
 
 _HINGE = 1.5  # times B l^2 / A, nearest to the element's bending
 _FLOOR = 1e-10  # of the mean diagonal: holds what nothing else does
@@ -47,7 +47,7 @@ class NearestHessian:
         self._add(constant, self._constant)
         self._edge_slot, self._pair_slot = self._places()
         self._blocks = np.empty((len(rows), 3, 3))
-        self._cholesky = Cholesky(rows, columns, points, size=3)
+        self._cholesky = Cholesky(Pattern(rows, columns, len(points), size=3))
 
     def factor(self, x: FloatArray, scalar: csc_array, diagonal: FloatArray) -> None:
         """Factor at ``x``, with more scalar terms (n, n) and diagonal blocks (n, 3, 3) added."""

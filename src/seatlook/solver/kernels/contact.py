@@ -2,41 +2,56 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 from seatlook.solver.kernels.distance import distance, distance_hessian, near
 
 
 @njit(cache=True)
-def contact_value(x, coefficients, grid, half, settled, stiffness, gradient, settled_gradient):
+def look(x, coefficients, grid, half, settled, seen, found):
+    """Distance and its gradient below every vertex, looked up anew only where one has moved.
+
+    ``found`` (n, 5) holds them and the offset up to which a distance of infinity means too far.
+    """
+    for i in range(len(half)):
+        offset = half[i] - settled[i]
+        still = x[i, 0] == seen[i, 0] and x[i, 1] == seen[i, 1] and x[i, 2] == seen[i, 2]
+        if still and (found[i, 0] != np.inf or offset <= found[i, 4]):
+            continue
+        px, py, pz = x[i, 0], x[i, 1], x[i, 2]
+        seen[i, 0], seen[i, 1], seen[i, 2] = px, py, pz
+        found[i, 0], found[i, 4] = np.inf, offset
+        if near(coefficients, grid, px, py, pz, offset):
+            found[i, 0], found[i, 1], found[i, 2], found[i, 3] = distance(
+                coefficients, grid, px, py, pz
+            )
+
+
+@njit(cache=True)
+def contact_value(found, half, settled, stiffness, gradient, settled_gradient):
     """Energy k/2 <half - settled - phi>^2 summed over vertices; adds both its gradients."""
     energy = 0.0
     for i in range(len(stiffness)):
-        offset = half[i] - settled[i]
-        if not near(coefficients, grid, x[i, 0], x[i, 1], x[i, 2], offset):
-            continue
-        phi, gx, gy, gz = distance(coefficients, grid, x[i, 0], x[i, 1], x[i, 2])
-        depth = offset - phi
+        depth = half[i] - settled[i] - found[i, 0]
         if depth > 0.0:
             force = stiffness[i] * depth
             energy += 0.5 * force * depth
             settled_gradient[i] -= force
-            gradient[i, 0] -= force * gx
-            gradient[i, 1] -= force * gy
-            gradient[i, 2] -= force * gz
+            gradient[i, 0] -= force * found[i, 1]
+            gradient[i, 1] -= force * found[i, 2]
+            gradient[i, 2] -= force * found[i, 3]
     return energy
 
 
 @njit(cache=True)
-def contact_state(x, coefficients, grid, half, settled, stiffness, force, normal, depth):
+def contact_state(found, half, settled, stiffness, force, normal, depth):
     """Normal force, unit normal and depth in the springs of every vertex; 0 when free."""
     for i in range(len(stiffness)):
         force[i], depth[i] = 0.0, 0.0
         normal[i] = 0.0
+        phi, gx, gy, gz = found[i, 0], found[i, 1], found[i, 2], found[i, 3]
         offset = half[i] - settled[i]
-        if not near(coefficients, grid, x[i, 0], x[i, 1], x[i, 2], offset):
-            continue
-        phi, gx, gy, gz = distance(coefficients, grid, x[i, 0], x[i, 1], x[i, 2])
         if phi < offset:
             norm = (gx * gx + gy * gy + gz * gz) ** 0.5
             depth[i] = offset - phi
@@ -45,25 +60,20 @@ def contact_state(x, coefficients, grid, half, settled, stiffness, force, normal
 
 
 @njit(cache=True)
-def contact_blocks(x, coefficients, grid, half, settled, stiffness, definite, blocks):
+def contact_blocks(x, coefficients, grid, found, half, settled, stiffness, definite, blocks):
     """Second derivative (3, 3) per vertex; ``definite`` leaves the curvature of phi out."""
     for i in range(len(stiffness)):
         blocks[i] = 0.0
-        px, py, pz = x[i, 0], x[i, 1], x[i, 2]
-        offset = half[i] - settled[i]
-        if not near(coefficients, grid, px, py, pz, offset):
-            continue
-        phi, gx, gy, gz = distance(coefficients, grid, px, py, pz)
-        depth = offset - phi
+        depth = half[i] - settled[i] - found[i, 0]
         if depth <= 0.0:
             continue
-        g = (gx, gy, gz)
+        g = (found[i, 1], found[i, 2], found[i, 3])
         k = stiffness[i]
         for a in range(3):
             for b in range(3):
                 blocks[i, a, b] = k * g[a] * g[b]
         if not definite:
-            xx, yy, zz, xy, xz, yz = distance_hessian(coefficients, grid, px, py, pz)
+            xx, yy, zz, xy, xz, yz = distance_hessian(coefficients, grid, x[i, 0], x[i, 1], x[i, 2])
             h = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
             for a in range(3):
                 for b in range(3):

@@ -199,9 +199,12 @@ def distance(coefficients, grid, px, py, pz):
     for a in range(4):
         q, qy, qz = 0.0, 0.0, 0.0
         for b in range(4):
-            row = coefficients[i + a - 1, j + b - 1]
-            r = wz[0] * row[k - 1] + wz[1] * row[k] + wz[2] * row[k + 1] + wz[3] * row[k + 2]
-            rz = sz[0] * row[k - 1] + sz[1] * row[k] + sz[2] * row[k + 1] + sz[3] * row[k + 2]
+            # By single entries: a view of the row would cost more than its products.
+            d, e = i + a - 1, j + b - 1
+            c0, c1 = coefficients[d, e, k - 1], coefficients[d, e, k]
+            c2, c3 = coefficients[d, e, k + 1], coefficients[d, e, k + 2]
+            r = wz[0] * c0 + wz[1] * c1 + wz[2] * c2 + wz[3] * c3
+            rz = sz[0] * c0 + sz[1] * c1 + sz[2] * c2 + sz[3] * c3
             q += wy[b] * r
             qy += sy[b] * r
             qz += wy[b] * rz
