@@ -47,6 +47,17 @@ def test_far_away_the_relief_is_roughness(textures, name):
     assert roughness > 0.4
 
 
+def test_weave_finer_than_the_samples_is_roughness(textures):
+    """Regular yarns about as wide as a sample would beat with the pixels: rings on the cover."""
+    material, points = look("weave"), np.random.default_rng(0).random((500, 2)) * 0.5
+
+    def steepness(width):
+        return np.std([grain(textures, material, 0.4, u, w, width)[0] for u, w in points])
+
+    assert steepness(0.8e-3) < 1e-6
+    assert steepness(0.25e-3) > 0.5 * steepness(1e-5)
+
+
 @pytest.mark.parametrize("name", MAPS)
 def test_no_slope_as_long_as_a_wrinkle(textures, name):
     """Relief that tilts over 8 mm and more would be seen as wrinkles under raking light."""

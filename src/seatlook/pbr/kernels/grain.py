@@ -31,6 +31,9 @@ _STROKE = 0.035
 # Texels are as wide as this share of a sample: the levels' own filter is wider than a box, and the
 # steep narrow folds of a grain are no Gaussian that roughness could stand for.
 SHARP = 0.5
+# Samples per cell of a weave below which its texels are wider: it is regular and would beat with
+# the pixels.
+_WEAVE = 4.0
 
 
 @leaf()
@@ -97,6 +100,8 @@ def grain(textures, material, roughness, u, v, width):
     widens the lobe, alpha^2 + 2 variance, so a minified grain neither sparkles nor turns smooth.
     """
     texels = textures.texels[material.texture]
+    if material.texture == WEAVE:
+        width *= max(1.0, _WEAVE * width / material.texture_scale)
     su, sv, variance, share = _filtered(texels, textures, material, u, v, width)
     steep = material.texture_depth / material.texture_scale
     alpha = roughness**2
