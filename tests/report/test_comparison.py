@@ -102,6 +102,24 @@ def test_the_page_says_first_what_differs(comparison, tmp_path):
     assert len(list(tmp_path.glob("maps/*/*.png"))) == 8
 
 
+def test_names_of_ones_own_that_would_share_a_folder_are_refused(folder):
+    path = folder / "scene.toml"
+    with pytest.raises(InputError, match=r"got ease 4\.0, ease 4\.0%, expected names"):
+        compare({"ease 4.0": path, "ease 4.0%": path})
+
+
+def test_changes_are_named_once_and_long_heads_are_clipped_with_a_title(comparison, tmp_path):
+    long = "a name of a variant as people write it into their scenes, with a date"
+    first, second = comparison.variants.values()
+    named = replace(
+        comparison, variants=MappingProxyType({"pvc": first, long: replace(second, name=long)})
+    )
+    page = write_comparison(named, tmp_path).read_text()
+    assert "Changes are from pvc." in page
+    assert f'title="change: {long}"><span class="clip">change: {long}</span>' in page
+    assert f"{long} - pvc" not in page
+
+
 def test_the_page_has_wrinkles_parameters_and_answers_of_each_variant(comparison, tmp_path):
     page = write_comparison(comparison, tmp_path).read_text()
     assert "Share of the cover with W2 above 1: pvc: " in page
@@ -167,6 +185,9 @@ def test_variants_are_told_apart(folder):
     scene = io.load_scene(folder / "scene.toml")
     named = replace(scene, name="b")
     assert variant_names([scene, named]) == ("two panels", "b")
+    # Their pictures would lie in one folder.
+    alike = replace(scene, name="Two Panels!", path=Path("x/other.toml"))
+    assert variant_names([scene, alike]) == ("scene", "other")
     assert variant_names([scene, replace(scene, path=Path("x/other.toml"))]) == ("scene", "other")
     folder_name = folder.name
     assert variant_names([scene, scene]) == (f"1 {folder_name}", f"2 {folder_name}")

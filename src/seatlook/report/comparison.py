@@ -230,6 +230,10 @@ def compare(
     given = scenes.values() if isinstance(scenes, Mapping) else scenes
     read = [s if isinstance(s, Scene) else io.load_scene(s, changes=words) for s in given]
     names = tuple(scenes) if isinstance(scenes, Mapping) else variant_names(read)
+    if _alike(names):
+        raise InputError.single(
+            "scenes", got=", ".join(names), expected="names that differ in letters or digits"
+        )
     named = dict(zip(names, read, strict=True))
     for name in results:
         if name not in named:
@@ -254,18 +258,28 @@ def compare(
 def variant_names(scenes: Sequence[Scene]) -> tuple[str, ...]:
     """Names of scenes, told apart by their files, then by numbers, where they are alike."""
     names = [scene.name for scene in scenes]
-    if len(set(names)) < len(names):
+    if _alike(names):
         names = [s.path.stem if s.path else s.name for s in scenes]
-    if len(set(names)) < len(names):
+    if _alike(names):
         names = [s.path.parent.name if s.path else s.name for s in scenes]
-    if len(set(names)) < len(names):
+    if _alike(names):
         names = [f"{number} {name}" for number, name in enumerate(names, 1)]
     return tuple(names)
 
 
+def _folder(name: str) -> str:
+    """Folder of what belongs to a variant."""
+    return Path(picture_path(name, name)).stem
+
+
+def _alike(names: Sequence[str]) -> bool:
+    """Whether two would share a folder: of "ease 4.0" and "ease 4.0 %" only one has pictures."""
+    return len({_folder(name) for name in names}) < len(names)
+
+
 def _solved(scene: Scene, name: str, keep: Path | None) -> Solution:
     """Take the kept result of this very scene, or solve and keep it."""
-    path = None if keep is None else keep / Path(picture_path(name, name)).stem / RESULT
+    path = None if keep is None else keep / _folder(name) / RESULT
     if path is not None and path.exists():
         solution: Solution = io.read_result(path)
         if (solution.cover.scene_digest, solution.cover.seed) == (scene.digest, scene.seed):

@@ -63,6 +63,7 @@ def write_comparison(
         maps=tuple(_maps(comparison, folder)),
         zones=_zones(comparison, "w2_p95"),
         differences=_differences(comparison, scores),
+        baseline=comparison.first.name,
         wrinkles=wrinkles,
         spots=wrinkles.spots,
         summary=tuple(_summary(comparison, scores)),
@@ -172,7 +173,7 @@ def _wrinkles(comparison: Comparison) -> WrinkleSection:
         worst=Table(
             heads=("wrinkle", *heads),
             rows=tuple(
-                (f"{name} {rank}", *cells)
+                (f"{rank}, {name}", *cells)
                 for name, part in parts.items()
                 for rank, *cells in part.worst.rows
             ),
@@ -186,7 +187,8 @@ def _wrinkles(comparison: Comparison) -> WrinkleSection:
         maps=(),
         files=(),
         spots=tuple(
-            Spot(label=f"{name}: {spot.label}", x=spot.x, y=spot.y)
+            # The number first: a long name is cut on a button.
+            Spot(label=f"{spot.label}, {name}", x=spot.x, y=spot.y)
             for name, part in parts.items()
             for spot in part.spots
         ),
@@ -215,7 +217,9 @@ def _differences(
     return MappingProxyType(
         {
             "Parameters that differ": _different_parameters(comparison),
-            **({_VISIBILITY: scores.table()} if scores and scores.vwi else {}),
+            **(
+                {_VISIBILITY: _against(comparison, scores.table())} if scores and scores.vwi else {}
+            ),
             **{name: _zones(comparison, measure) for name, measure in _TABLES.items()},
         }
     )
@@ -224,7 +228,15 @@ def _differences(
 def _zones(comparison: Comparison, measure: str) -> Table:
     """The table of a measure, which is named above it and not in every head."""
     table = comparison.table(measure)
-    return replace(table, heads=tuple(h.removeprefix(f"{measure}: ") for h in table.heads))
+    named = replace(table, heads=tuple(h.removeprefix(f"{measure}: ") for h in table.heads))
+    return _against(comparison, named)
+
+
+def _against(comparison: Comparison, table: Table) -> Table:
+    """Heads of differences without the first variant, which the page names once."""
+    minus = f" - {comparison.first.name}"
+    heads = (f"change: {h.removesuffix(minus)}" if h.endswith(minus) else h for h in table.heads)
+    return replace(table, heads=tuple(heads))
 
 
 def _different_parameters(comparison: Comparison) -> Table:

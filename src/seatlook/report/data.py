@@ -201,6 +201,7 @@ class PageData:
     checks : solver conditions and accept limits
     status : the solver's own word, such as "converged"
     warnings : sentences that must be read before the pictures are believed
+    baseline : the variant that changes in ``differences`` and ``zones`` are from
     summary : sentences that answer the page's questions, above everything else
     facing : the two cells that are compared first; the first two of the grid if not given
     history : column -> values, one per solver step; "time" is the horizontal axis if present
@@ -234,6 +235,7 @@ class PageData:
         default_factory=lambda: MappingProxyType({})
     )
     files: tuple[str, ...] = ()
+    baseline: str = ""
     summary: tuple[str, ...] = ()
     facing: tuple[tuple[str, str], tuple[str, str]] | None = None
 

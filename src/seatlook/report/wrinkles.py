@@ -120,6 +120,8 @@ def profile(name: str, cut: Section) -> Profile:
     low, high = min(height.min(), meant.min()), max(height.max(), meant.max())
     span = max(high - low, 1e-3)
     left, width = along[0], along[-1] - along[0]
+    # Near an end of the section the 0 would lie on that end's number.
+    middle = (0.0,) if min(-along[0], along[-1]) > width / 8 else ()
 
     def line(z: np.ndarray) -> str:
         x = WIDTH * (along - left) / width
@@ -132,7 +134,7 @@ def profile(name: str, cut: Section) -> Profile:
         intended=line(meant),
         x_ticks=tuple(
             Tick(at=WIDTH * (v - left) / width, label=number(round(float(v), 1)))
-            for v in (along[0], 0.0, along[-1])
+            for v in (along[0], *middle, along[-1])
         ),
         y_ticks=tuple(
             Tick(at=HEIGHT * (high - v) / span, label=f"{v:.2f}".replace("-", "−"))
