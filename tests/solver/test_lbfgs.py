@@ -176,6 +176,17 @@ def test_split_matrix_treats_the_normal_by_itself():
 def test_singular_matrix_is_an_error():
     with pytest.raises(SolverError, match="cannot be factored"):
         Factor(csc_array((4, 4)))
+    with pytest.raises(SolverError, match="cannot be factored"):
+        Factor(csc_array(chain(4) - 3.0 * np.eye(4)))
+
+
+def test_what_only_rounding_makes_indefinite_is_lifted():
+    free = chain(30) - np.diag(chain(30).sum(axis=0))
+    free[3, 3] -= 1e-15
+    right, out = np.zeros((30, 3)), np.zeros((30, 3))
+    right[0], right[-1] = 1.0, -1.0
+    Factor(csc_array(free)).solve(right, out)
+    np.testing.assert_allclose(free @ out, right, atol=1e-2)
 
 
 def test_matrices_of_one_pattern_share_its_order_alone():

@@ -14,7 +14,8 @@ from seatlook.model import FloatArray, IntArray
 from seatlook.solver.multifrontal import Cholesky, Pattern
 
 _KEPT = 6  # patterns: those of a process, while ties join one after the other
-_patterns: OrderedDict[tuple[bytes, bytes], tuple[Pattern, IntArray]] = OrderedDict()
+_patterns: OrderedDict[tuple[bytes, bytes], tuple[Pattern, IntArray, IntArray]] = OrderedDict()
+_ROUNDING = 1e-12  # of the diagonal, that holds what nothing holds but rounding
 
 
 class Preconditioner(Protocol):
@@ -54,16 +55,22 @@ class Renewed:
 class Factor:
     """Factor of a symmetric positive definite matrix, (n, n) for each coordinate or (3n, 3n).
 
+    A sheet that falls freely has next to no stiffness as a whole; there the matrix may be
+    indefinite by rounding, and is lifted by as much.
+
     Raises
     ------
     SolverError   the matrix is not positive definite
     """
 
     def __init__(self, matrix: csc_array) -> None:
-        pattern, lower = _pattern(matrix)
+        pattern, lower, diagonal = _pattern(matrix)
         self._cholesky = Cholesky(pattern)
-        if not self._cholesky.factor(matrix.data[lower].reshape(-1, 1, 1)):
-            raise SolverError("stiffness matrix cannot be factored: it is not positive definite")
+        entries = matrix.data[lower].reshape(-1, 1, 1)
+        if not self._cholesky.factor(entries):
+            entries[diagonal] *= 1.0 + _ROUNDING
+            if not self._cholesky.factor(entries):
+                raise SolverError("stiffness matrix cannot be factored: it is not positive")
         self._size = matrix.shape[0]
 
     def solve(self, right: FloatArray, out: FloatArray) -> None:
@@ -78,15 +85,16 @@ class Factor:
         return self._cholesky.solve(right[:, None])[:, 0]
 
 
-def _pattern(matrix: csc_array) -> tuple[Pattern, IntArray]:
-    """Order of elimination, from an earlier matrix if it can be, and which entries are needed."""
+def _pattern(matrix: csc_array) -> tuple[Pattern, IntArray, IntArray]:
+    """Order of elimination, of an earlier matrix if possible, entries needed, the diagonal's."""
     key = matrix.indptr.tobytes(), matrix.indices.tobytes()
     if key not in _patterns:
         rows = matrix.indices.astype(np.int64)
         columns = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
         lower = np.flatnonzero(rows >= columns)
-        pattern = Pattern(rows[lower], columns[lower], matrix.shape[0])
-        _patterns[key] = pattern, lower
+        rows, columns = rows[lower], columns[lower]
+        pattern = Pattern(rows, columns, matrix.shape[0])
+        _patterns[key] = pattern, lower, np.flatnonzero(rows == columns)
         if len(_patterns) > _KEPT:
             _patterns.popitem(last=False)
     _patterns.move_to_end(key)
