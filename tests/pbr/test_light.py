@@ -34,9 +34,9 @@ def test_points_of_the_disc_keep_its_variance(factor):
 
 def test_half_set_disc_has_the_integral_of_the_cosine():
     """Mean of the positive part over a disc at the horizon: 2 / (3 pi) of its radius."""
-    assert above_horizon(0.0, 0.1) == pytest.approx(0.1 * 2 / (3 * np.pi), rel=0.03)
-    assert above_horizon(0.3, 0.1) == 0.3
-    assert above_horizon(-0.3, 0.1) == 0.0
+    assert above_horizon(0.0, 0.0, 0.1) == pytest.approx(0.1 * 2 / (3 * np.pi), rel=0.03)
+    assert above_horizon(0.3, 0.3, 0.1) == 0.3
+    assert above_horizon(-0.3, -0.3, 0.1) == 0.0
 
 
 @pytest.mark.render

@@ -292,7 +292,7 @@ def view_of(tables, material, roughness, colour, ToV, BoV, NoV):
 
 
 @leaf()
-def _widened(alpha, more):
+def widened(alpha, more):
     """Width of a lobe whose slopes vary by ``more`` in addition."""
     return np.sqrt(alpha * alpha + more) if more > 1e-3 * alpha * alpha else alpha
 
@@ -308,7 +308,7 @@ def brdf(tables, material, coupling, view, wider, ToL, BoL, NoL, out):
     inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
     ToH, BoH, NoH = x * inverse, y * inverse, z * inverse
     LoH = min(1.0, ToL * ToH + BoL * BoH + NoL * NoH)
-    ax, ay = _widened(view.alpha_x, wider), _widened(view.alpha_y, wider)
+    ax, ay = widened(view.alpha_x, wider), widened(view.alpha_y, wider)
     lobe = D_GGX(ax, ay, ToH, BoH, NoH)
     lobe *= V_SmithGGXCorrelated(ax, ay, view.ToV, view.BoV, view.NoV, ToL, BoL, NoL)
     _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out)
@@ -317,7 +317,7 @@ def brdf(tables, material, coupling, view, wider, ToL, BoL, NoL, out):
 @leaf()
 def brdf_isotropic(tables, material, coupling, view, wider, NoL, NoH, LoH, out):
     """Same where the lobe is as wide along as across, by the cosines alone."""
-    lobe = GGX(_widened(view.alpha_x, wider), view.NoV, NoL, NoH)
+    lobe = GGX(widened(view.alpha_x, wider), view.NoV, NoL, NoH)
     _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out)
 
 
@@ -337,7 +337,7 @@ def _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out):
         _add_sheen(tables, material, min(here.coat, there.coat), view.NoV, NoL, NoH, out)
     share = coat_share(material)
     if share > 0.0:
-        lobe = GGX(_widened(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
+        lobe = GGX(widened(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
         again = here.coat_lost * there.coat_lost / (np.pi * (1.0 - view.means.coat))
         coat = share * ((COAT_F0 + (1.0 - COAT_F0) * m) * lobe + view.means.coat_again * again)
         for c in range(3):

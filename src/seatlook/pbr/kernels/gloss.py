@@ -144,7 +144,7 @@ def sent(mesh, look, lights, lit, sky, f, d, density, work):
             continue
         l, e = arriving(lights, k, p)
         angle = angle_of(lights, k, p)
-        NoL = above_horizon(dot(n, l), angle)
+        NoL = above_horizon(dot(n, l), dot(n, l), angle)
         if NoL <= 1e-5:
             continue
         wider = 0.125 * angle * angle + _BLUR / density

@@ -57,11 +57,11 @@ def _bilinear(t, textures, level, u, v):
 
 
 @leaf()
-def _filtered(t, textures, material, u, v, width):
-    """Value of one map for a sample ``width`` [m] wide."""
+def filtered(t, textures, material, u, v, width):
+    """Value of one map by texels ``width`` [m] wide, or the finest."""
     tile = textures.cells * material.texture_scale
     texel = tile / textures.size
-    level = max(0.0, np.log2(SHARP * width / texel))
+    level = max(0.0, np.log2(width / texel))
     last = len(textures.start) - 1
     fine = min(int(level), last)
     coarse = min(fine + 1, last)
@@ -102,7 +102,7 @@ def grain(textures, material, roughness, u, v, width):
     texels = textures.texels[material.texture]
     if material.texture == WEAVE:
         width *= max(1.0, _WEAVE * width / material.texture_scale)
-    su, sv, variance, share = _filtered(texels, textures, material, u, v, width)
+    su, sv, variance, share = filtered(texels, textures, material, u, v, SHARP * width)
     steep = material.texture_depth / material.texture_scale
     alpha = roughness**2
     alpha = np.sqrt(alpha * alpha + 2.0 * steep * steep * variance)

@@ -75,30 +75,32 @@ def angle_of(lights, k, p):
 
 @leaf()
 def towards_part(lights, angle, l, q):
-    """Unit direction to point q of a light's disc around ``l``, and how wide its part is.
+    """Unit direction to point q of a light's disc around ``l``, how wide its part is, its light.
 
     The second value is what the part adds to the squared width of a lobe: twice the variance of
-    the half-vectors, a sixteenth of the squared angle over the whole disc per axis.
+    the half-vectors, a sixteenth of the squared angle over the whole disc per axis; the third
+    makes the parts together as bright on a facing plane as the whole.
     """
     wider = 0.125 * angle * angle
     # Smaller than any lobe: the middle stands for all.
     if angle < SMALL:
-        return l, wider
+        return l, wider, 1.0
     t, s = across(l)
     d = along(along(l, angle * lights.disc[q, 0], t), angle * lights.disc[q, 1], s)
-    return unit(d), wider / len(lights.disc)
+    return unit(d), wider / len(lights.disc), np.sqrt(dot(d, d))
 
 
 @leaf()
-def above_horizon(cosine, angle):
+def above_horizon(cosine, smooth, angle):
     """Mean cosine over a disc of angular radius ``angle``, of which a part may have set.
 
-    The disc is taken for a band of the same variance, a half-width of 0.87 radii.
+    ``smooth``: cosine of the surface without its relief, behind which the disc sets for all of
+    the relief. The disc is taken for a band of the same variance, a half-width of 0.87 radii.
     """
-    w = 0.866 * angle
-    if cosine >= w:
+    w, least = 0.866 * angle, min(cosine, smooth)
+    if least >= w:
         return cosine
-    return (cosine + w) ** 2 / (4.0 * w) if cosine > -w else 0.0
+    return ((cosine + w) ** 2 - (cosine - least) ** 2) / (4.0 * w) if least > -w else 0.0
 
 
 @leaf()

@@ -10,6 +10,7 @@ from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, brdf_isotropic, view_of
+from seatlook.pbr.kernels.facets import ROWS, SIDE, brdf_facets, curves_to_eye, faceted, spread
 from seatlook.pbr.kernels.grain import Textures, grain, holes
 from seatlook.pbr.kernels.light import (
     SMALL,
@@ -134,19 +135,23 @@ def _place(mesh, around, f, hit):
 
 
 @leaf()
-def _detail(mesh, look, material, f, hit, place):
-    """Normal with relief and thread, base colour, roughness, metalness, light left by the holes."""
-    b1, b2, t, plane, _, spread = hit
+def _detail(mesh, look, eye, material, f, hit, place, side, facets):
+    """Normal with relief and thread, base colour, roughness, metalness, light left by the holes.
+
+    With ``side`` above 0 the relief goes into ``facets``, so many along each side of the sample;
+    the last two returned add to the squared width of their lobes, and of the lobe of them all.
+    """
+    b1, b2, t, plane, _, between = hit
     n, v = place.n, place.v
     roughness, metal, tint = material.roughness, material.metalness, (1.0, 1.0, 1.0)
-    share, own, kept = 1.0, 0.0, 1.0
+    share, own, kept, within, beside = 1.0, 0.0, 1.0, 0.0, 0.0
     if material.texture >= 0 or material.maps >= 0 or material.perforation_diameter > 0.0:
         u, w = _pattern_at(mesh, f, b1, b2)
-        width = t * spread / np.sqrt(max(0.05, dot(n, v)))
+        width = t * between / np.sqrt(max(0.05, dot(n, v)))
         su, sv, gu, gv = 0.0, 0.0, 0.0, 0.0
         if material.maps >= 0:
             tint, roughness, metal, su, sv = measured(look.maps, material, u, w, width)
-        if material.texture >= 0:
+        if material.texture >= 0 and side == 0:
             gu, gv, roughness, share = grain(look.textures, material, roughness, u, w, width)
         if material.texture >= 0 or material.maps >= 0:
             n = unit(along(along(n, -su - gu, place.warp), -sv - gv, place.weft))
@@ -157,12 +162,17 @@ def _detail(mesh, look, material, f, hit, place):
     distance, arc = seam_at(mesh, f, b1, b2)
     if distance < reach(look.thread):
         away, onward = away_from_seam(mesh, f)
-        width = t * spread / np.sqrt(max(0.05, abs(dot(plane, v))))
+        width = t * between / np.sqrt(max(0.05, abs(dot(plane, v))))
         sa, so, left, covered = relief(look.thread, distance, arc, width)
         n = unit(tilt(n, away, onward, sa, so))
         share *= left
         own = covered * look.thread.own
         roughness += covered * max(0.0, 0.6 - roughness)
+    if side > 0:
+        n, within, beside, grey = spread(
+            mesh, look.textures, eye, material, f, place, n, (u, w), t, side, facets
+        )
+        share *= grey
     share *= 1.0 - own
     base, thread = material.albedo, look.thread.colour
     colour = (
@@ -170,7 +180,7 @@ def _detail(mesh, look, material, f, hit, place):
         base[1] * tint[1] * share + own * thread[1],
         base[2] * tint[2] * share + own * thread[2],
     )
-    return n, colour, roughness, metal, kept
+    return n, colour, roughness, metal, kept, within, beside
 
 
 @leaf()
@@ -184,28 +194,33 @@ def _point(q, part):
 
 
 @leaf()
-def sample(mesh, look, lights, around, f, hit, place, q, visible, work):
-    """Radiance of one sample into ``work[0]``; ``work`` is (3, 3).
+def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, work, facets):
+    """Radiance of one sample into ``work[0]``; ``work`` is (3, 3), ``facets`` room for its relief.
 
     ``hit``: (weight, weight, distance, face normal, unit ray, angle between samples);
     ``visible`` (k,): share of each light that is not hidden; ``q``: number of the sample in its
     pixel, -1 or -2 where it is the first or second that stands for two, -3 where it does for four.
     """
     material, v = look.materials[mesh.panel[f]], place.v
-    n, colour, roughness, metal, kept = _detail(mesh, look, material, f, hit, place)
+    even, side = material.anisotropy == 0.0, 0
+    if faceted(material):
+        side = 2 * SIDE if q == -3 else SIDE
+    bare = _detail(mesh, look, eye, material, f, hit, place, side, facets)
+    n, colour, roughness, metal, kept, within, beside = bare
     if metal != material.metalness:
         look.changed[0] = material
         look.changed[0].metalness = metal
         material = look.changed[0]
     n = towards_eye(n, v)
-    even = material.anisotropy == 0.0
     warp, weft = place.warp, place.weft
     if not even:
         warp, weft = frame(n, warp)
     out, f_out = work[0], work[1]
     view = view_of(look.tables, material, roughness, colour, dot(warp, v), dot(weft, v), dot(n, v))
-    _from_around(look, around, place, material, view, n, work)
+    _from_around(look, around, place, material, view, beside, n, work)
     mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
+    count = side * side
+    curves = curves_to_eye(look.tables, material, view, facets, count)
     for k in range(len(lights.near)):
         if visible[k] <= 0.0:
             continue
@@ -216,8 +231,18 @@ def sample(mesh, look, lights, around, f, hit, place, q, visible, work):
         if q < 0 and angle >= SMALL:
             parts = 4 if q == -3 else 2
         for part in range(parts):
-            l, wider = towards_part(lights, angle, middle, _point(q, part))
-            NoL = above_horizon(dot(n, l), angle / np.sqrt(len(lights.disc)))
+            l, wider, light = towards_part(lights, angle, middle, _point(q, part))
+            light *= visible[k] / parts
+            smooth, radius = dot(place.n, l), angle / np.sqrt(len(lights.disc))
+            if side > 0:
+                towards = (l, wider + within, smooth, radius)
+                brdf_facets(
+                    look.tables, material, mean, view, curves, facets, count, towards, v, f_out
+                )
+                for c in range(3):
+                    out[c] += f_out[c] * e[c] * light
+                continue
+            NoL = above_horizon(dot(n, l), smooth, radius)
             if NoL <= 1e-5:
                 continue
             if even:
@@ -228,22 +253,29 @@ def sample(mesh, look, lights, around, f, hit, place, q, visible, work):
                 x, y = dot(warp, l), dot(weft, l)
                 brdf(look.tables, material, mean, view, wider, x, y, NoL, f_out)
             for c in range(3):
-                out[c] += f_out[c] * NoL * e[c] * visible[k] / parts
+                out[c] += f_out[c] * NoL * e[c] * light
     for c in range(3):
         out[c] *= kept
 
 
 @leaf()
-def _from_around(look, around, place, material, view, n, work):
+def _blurred(roughness, more):
+    return min(1.0, (roughness**4 + more) ** 0.25) if more > 0.0 else roughness
+
+
+@leaf()
+def _from_around(look, around, place, material, view, beside, n, work):
     """Light of the sky and of other faces that goes to the eye, into ``work[0]``."""
     out, specular, diffuse = work[0], work[1], work[2]
     coat = albedo_towards(look.tables, material, view, specular, diffuse)
     base = top = row_of(around.even)
     if len(around.panorama):
         mirror = along((-place.v[0], -place.v[1], -place.v[2]), 2.0 * view.NoV, n)
-        base = top = panorama_towards(around.panorama, view.table_roughness, mirror)
+        rough = _blurred(view.table_roughness, beside)
+        base = top = panorama_towards(around.panorama, rough, mirror)
         if coat > 0.0:
-            top = panorama_towards(around.panorama, material.coat_roughness, mirror)
+            rough = _blurred(material.coat_roughness, beside)
+            top = panorama_towards(around.panorama, rough, mirror)
     for c in range(3):
         out[c] = diffuse[c] * place.diffuse[c] + (specular[c] + coat) * place.mirrored[c]
         out[c] += place.open * (specular[c] * base[c] + coat * top[c])
@@ -251,8 +283,9 @@ def _from_around(look, around, place, material, view, n, work):
 
 @leaf()
 def _plain(material):
-    """Whether a surface is the same all over a pixel."""
-    return material.texture < 0 and material.maps < 0 and material.perforation_diameter == 0.0
+    """Whether one sample stands for a pixel: there is no detail, or facets show it."""
+    even = material.texture < 0 or faceted(material)
+    return even and material.maps < 0 and material.perforation_diameter == 0.0
 
 
 @leaf()
@@ -290,7 +323,7 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, backdrop, ou
     Returns the greatest radiance of the surface, nan where one is not finite.
     """
     work, total, brightest = np.zeros((3, 3)), np.zeros(3), 0.0
-    visible = np.ones(len(lights.near))
+    visible, facets = np.ones(len(lights.near)), np.empty((ROWS, 4 * SIDE * SIDE))
     spread = np.sqrt(dot(row_of(eye.right), row_of(eye.right)))
     spread /= np.sqrt(dot(row_of(eye.first), row_of(eye.first)))
     near_seam = reach(look.thread)
@@ -315,6 +348,10 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, backdrop, ou
             hit = (b1, b2, t, plane, ray, np.sqrt(2.0) * spread)
             place = _place(mesh, around, first, hit)
             weight = 1.0 if one else 0.5
+            if one:
+                ray = ray_through(eye, 2 * x, 2 * y)
+                b1, b2, t, plane = meet(mesh, eye, first, ray)
+                hit = (b1, b2, t, plane, ray, spread)
         for q in range(factor * factor):
             if (pair and q % 3) or (one and q):
                 continue
@@ -336,7 +373,7 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, backdrop, ou
                 place = _place(mesh, around, f, hit)
             for k in range(len(visible)):
                 visible[k] = visibility[k, j, i] / 255.0
-            sample(mesh, look, lights, around, f, hit, place, point, visible, work)
+            sample(mesh, look, eye, lights, around, f, hit, place, point, visible, work, facets)
             for c in range(3):
                 total[c] += weight * work[0, c]
         for c in range(3):
