@@ -29,11 +29,11 @@ class Quality:
 
 # Cheapest first.
 TIERS: dict[str, Quality] = {
-    "T0": Quality(factor=1, rays=0, strata=0, bounces=0, error=0.104),
-    "T1": Quality(factor=1, rays=1, strata=0, bounces=0, error=0.102),
-    "T2": Quality(factor=2, rays=4, strata=0, bounces=0, error=0.0859),
-    "T3": Quality(factor=2, rays=4, strata=8, bounces=1, error=0.0594),
-    "T4": Quality(factor=4, rays=4, strata=16, bounces=3, error=0.037),
+    "T0": Quality(factor=1, rays=0, strata=0, bounces=0, error=0.0723),
+    "T1": Quality(factor=1, rays=1, strata=0, bounces=0, error=0.0705),
+    "T2": Quality(factor=2, rays=4, strata=0, bounces=0, error=0.0616),
+    "T3": Quality(factor=2, rays=4, strata=8, bounces=1, error=0.0327),
+    "T4": Quality(factor=4, rays=4, strata=16, bounces=3, error=0.0337),
 }
 QUALITIES: dict[str, Quality] = {
     "draft": TIERS["T1"],

@@ -163,9 +163,11 @@ def brdf_facets(tables, material, coupling, view, to_eye, facets, count, part, v
     """Mean over ``count`` facets of BRDF times cosine, into ``out`` (3,).
 
     ``part``: direction of the light, what it adds to the squared width of the lobes, cosine from
-    the surface without its relief, angular radius; the other arguments as for ``brdf``.
+    the surface without its relief, angular radius, and which part of how many it is: each facet
+    looks at one of them, the four in every row and column at different ones. The other arguments
+    as for ``brdf``.
     """
-    l, wider, smooth, angle = part
+    l, wider, smooth, angle, turn, parts = part
     h = unit(along(v, 1.0, l))
     LoH = min(1.0, dot(l, h))
     low, high = 1.0, -1.0
@@ -181,6 +183,8 @@ def brdf_facets(tables, material, coupling, view, to_eye, facets, count, part, v
     diffuse = lobe = again = fibres = coat_lobe = coat_again = 0.0
     fibre_alpha = material.sheen_roughness**2
     for q in range(count):
+        if (q + 2 * (q // 4) + q // 8) % parts != turn:
+            continue
         m = (facets[X, q], facets[Y, q], facets[Z, q])
         c = above_horizon(dot(m, l), smooth, angle)
         if c <= 1e-5:
@@ -198,7 +202,7 @@ def brdf_facets(tables, material, coupling, view, to_eye, facets, count, part, v
         if coat > 0.0:
             coat_lobe += c * GGX(coat_alpha, NoV, c, NoH)
             coat_again += c * _at(to_eye.coat_lost, x) * _at(to_light.coat_lost, y)
-    weight = 1.0 / count
+    weight = parts / count
     diffuse *= weight * (1.0 - material.metalness) / (np.pi * coupling)
     again *= weight / (np.pi * (1.0 - view.means.base))
     fibres *= weight * (1.0 - material.metalness)

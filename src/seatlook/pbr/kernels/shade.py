@@ -235,7 +235,7 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, work, fac
             light *= visible[k] / parts
             smooth, radius = dot(place.n, l), angle / np.sqrt(len(lights.disc))
             if side > 0:
-                towards = (l, wider + within, smooth, radius)
+                towards = (l, wider + within, smooth, radius, part, parts)
                 brdf_facets(
                     look.tables, material, mean, view, curves, facets, count, towards, v, f_out
                 )
