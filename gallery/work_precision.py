@@ -61,7 +61,7 @@ TITLES = {
     "(5 to 40 edges, elastica)",
     "stretched": "Wrinkles of a stretched clamped sheet: wave length\n"
     "(uns, h 5, 3.5, 2.5 mm; 1: no train of waves; fine aligned grid)",
-    "cover": "Cover of the demo seat, sewn, hooked and at rest\n(20 to 5 mm; mean W2 against 3.5 mm)",
+    "cover": "Cover of the demo seat, sewn, hooked, at rest\n(20 to 5 mm; mean W2 against 3.5 mm)",
 }
 
 
