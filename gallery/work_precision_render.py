@@ -147,8 +147,9 @@ def measure(wanted: Callable[[Case], bool] = lambda case: True) -> list[dict[str
 
 def forget(studio: Studio) -> None:
     """Drop what the last picture left of light; the faces seen stay."""
-    for key in [k for k in studio._cache if k[0] != "faces"]:
-        del studio._cache[key]
+    kept = studio._kept._values
+    for key in [k for k in kept if k[0] != "faces"]:
+        del kept[key]
 
 
 def cover_of(studio: Studio) -> np.ndarray:

@@ -21,9 +21,8 @@ from seatlook.pbr.kernels.facets import (
     brdf_facets,
     curves_to_eye,
 )
-from seatlook.pbr.kernels.light import Lights, above_horizon, towards_part
+from seatlook.pbr.kernels.light import above_horizon
 from seatlook.pbr.kernels.tables import coupling, coupling_at
-from seatlook.pbr.rig import disc_points
 from seatlook.pbr.studio import pack_materials
 from seatlook.pbr.tables import load_tables
 
@@ -97,17 +96,3 @@ def test_relief_is_dark_where_the_light_has_set_behind_the_surface():
     for cosine, smooth in ((0.3, 0.02), (0.05, -0.03), (-0.02, 0.04), (0.4, 0.5), (0.2, -0.2)):
         want = np.where((cosine + x > 0) & (smooth + x > 0), cosine + x, 0.0).mean()
         assert above_horizon(cosine, smooth, 0.1) == pytest.approx(want, abs=1e-5)
-
-
-@pytest.mark.parametrize("factor", [2, 4])
-def test_parts_of_a_lamp_light_a_plane_as_the_lamp_does(factor):
-    l = unit(np.array([0.3, -0.4, 0.8]))
-    n = unit(np.array([-0.2, 0.3, 0.9]))
-    lights = Lights(
-        np.zeros(1, np.int64), l[None], np.ones((1, 3)), np.full(1, 0.2), disc_points(factor)
-    )
-    total = 0.0
-    for q in range(factor**2):
-        d, _, light = towards_part(lights, 0.1, tuple(l), q)
-        total += light * (n @ np.array(d)) / factor**2
-    assert total == pytest.approx(n @ l, rel=1e-12)

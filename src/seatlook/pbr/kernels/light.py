@@ -75,19 +75,18 @@ def angle_of(lights, k, p):
 
 @leaf()
 def towards_part(lights, angle, l, q):
-    """Unit direction to point q of a light's disc around ``l``, how wide its part is, its light.
+    """Unit direction to point q of a light's disc around ``l``, and how wide its part is.
 
     The second value is what the part adds to the squared width of a lobe: twice the variance of
-    the half-vectors, a sixteenth of the squared angle over the whole disc per axis; the third
-    makes the parts together as bright on a facing plane as the whole.
+    the half-vectors, a sixteenth of the squared angle over the whole disc per axis.
     """
     wider = 0.125 * angle * angle
     # Smaller than any lobe: the middle stands for all.
     if angle < SMALL:
-        return l, wider, 1.0
+        return l, wider
     t, s = across(l)
     d = along(along(l, angle * lights.disc[q, 0], t), angle * lights.disc[q, 1], s)
-    return unit(d), wider / len(lights.disc), np.sqrt(dot(d, d))
+    return unit(d), wider / len(lights.disc)
 
 
 @leaf()

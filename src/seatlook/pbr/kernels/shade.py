@@ -231,8 +231,8 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, work, fac
         if q < 0 and angle >= SMALL:
             parts = 4 if q == -3 else 2
         for part in range(parts):
-            l, wider, light = towards_part(lights, angle, middle, _point(q, part))
-            light *= visible[k] / parts
+            l, wider = towards_part(lights, angle, middle, _point(q, part))
+            light = visible[k] / parts
             smooth, radius = dot(place.n, l), angle / np.sqrt(len(lights.disc))
             if side > 0:
                 towards = (l, wider + within, smooth, radius, part, parts)
