@@ -31,7 +31,7 @@ class Quality:
 TIERS: dict[str, Quality] = {
     "T0": Quality(factor=1, rays=0, strata=0, bounces=0, error=0.0723),
     "T1": Quality(factor=1, rays=1, strata=0, bounces=0, error=0.0705),
-    "T2": Quality(factor=2, rays=4, strata=0, bounces=0, error=0.0616),
+    "T2": Quality(factor=2, rays=4, strata=0, bounces=0, error=0.0622),
     "T3": Quality(factor=2, rays=4, strata=8, bounces=1, error=0.0337),
     "T4": Quality(factor=4, rays=4, strata=16, bounces=3, error=0.0337),
 }
