@@ -31,7 +31,7 @@ from seatlook.pbr.kernels.surface import along, dot, minus, row, row_of, unit
 # Rows of the room for facets: unit normal, its cosine to the eye, share of the colour.
 X, Y, Z, NOV, SHARE = range(5)
 ROWS = 5
-# Facets along each side of a sample.
+# Facets along each side of a sample, or of the pixel that it stands for.
 SIDE = 2
 # Texels are as wide as this share of a facet: what many facets leave out averages away, what a
 # wider lobe adds does not.
@@ -69,25 +69,25 @@ def _bend(mesh, f, n, d):
 
 
 @leaf()
-def spread(mesh, textures, eye, material, f, place, n, at, t, side, facets):
-    """Facets of the relief under a sample, ``side`` along each of its sides, into ``facets``.
+def spread(mesh, textures, eye, material, f, place, n, at, t, covers, facets):
+    """Facets of the relief under a sample, or under all that it stands for, into ``facets``.
 
     ``at`` (u, v) [m]: place of the sample in the pattern; ``t`` [m]: distance from the eye; ``n``:
-    normal without the relief. More than ``SIDE`` facets stand for 2 x 2 samples from this one.
+    normal without the relief; ``covers``: samples along each side that it stands for.
     Returns the mean normal; what the slopes within a facet, and those of all facets, add to the
     squared width of a lobe; and the share of the colour, to which that of each facet is relative.
     """
     across, down = _step(place, row_of(eye.right), t), _step(place, row_of(eye.down), t)
-    if side > SIDE:
-        at = (at[0] + 0.5 * (across[0] + down[0]), at[1] + 0.5 * (across[1] + down[1]))
-        across, down = (2.0 * across[0], 2.0 * across[1]), (2.0 * down[0], 2.0 * down[1])
+    half = 0.5 * (covers - 1)
+    at = (at[0] + half * (across[0] + down[0]), at[1] + half * (across[1] + down[1]))
+    across, down = (covers * across[0], covers * across[1]), (covers * down[0], covers * down[1])
     steep = material.texture_depth / material.texture_scale
     texels = textures.texels[material.texture]
-    width = np.sqrt(abs(across[0] * down[1] - across[1] * down[0])) / side
+    width = np.sqrt(abs(across[0] * down[1] - across[1] * down[0])) / SIDE
     bend, bow = _bend(mesh, f, n, across), _bend(mesh, f, n, down)
-    mean, variance, share, weight = (0.0, 0.0, 0.0), 0.0, 0.0, 1.0 / (side * side)
-    for q in range(side * side):
-        x, y = (q % side + 0.5) / side - 0.5, (q // side + 0.5) / side - 0.5
+    mean, variance, share, weight = (0.0, 0.0, 0.0), 0.0, 0.0, 1.0 / (SIDE * SIDE)
+    for q in range(SIDE * SIDE):
+        x, y = (q % SIDE + 0.5) / SIDE - 0.5, (q // SIDE + 0.5) / SIDE - 0.5
         u, v = at[0] + x * across[0] + y * down[0], at[1] + x * across[1] + y * down[1]
         su, sv, s2, c = filtered(texels, textures, material, u, v, _SHARP * width)
         m = along(along(n, x, bend), y, bow)
@@ -97,7 +97,7 @@ def spread(mesh, textures, eye, material, f, place, n, at, t, side, facets):
         mean = along(mean, weight, m)
         variance += weight * s2
         share += weight * c
-    for q in range(side * side):
+    for q in range(SIDE * SIDE):
         facets[SHARE, q] /= share
     within = 2.0 * steep * steep * variance
     beside = within + max(0.0, 1.0 - dot(mean, mean))
@@ -164,8 +164,7 @@ def brdf_facets(tables, material, coupling, view, to_eye, facets, count, part, v
 
     ``part``: direction of the light, what it adds to the squared width of the lobes, cosine from
     the surface without its relief, angular radius, and which part of how many it is: each facet
-    looks at one of them, the four in every row and column at different ones. The other arguments
-    as for ``brdf``.
+    looks at one of them. The other arguments as for ``brdf``.
     """
     l, wider, smooth, angle, turn, parts = part
     h = unit(along(v, 1.0, l))
@@ -183,7 +182,7 @@ def brdf_facets(tables, material, coupling, view, to_eye, facets, count, part, v
     diffuse = lobe = again = fibres = coat_lobe = coat_again = 0.0
     fibre_alpha = material.sheen_roughness**2
     for q in range(count):
-        if (q + 2 * (q // 4) + q // 8) % parts != turn:
+        if q % parts != turn:
             continue
         m = (facets[X, q], facets[Y, q], facets[Z, q])
         c = above_horizon(dot(m, l), smooth, angle)

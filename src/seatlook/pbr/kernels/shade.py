@@ -135,10 +135,10 @@ def _place(mesh, around, f, hit):
 
 
 @leaf()
-def _detail(mesh, look, eye, material, f, hit, place, side, facets):
+def _detail(mesh, look, eye, material, f, hit, place, covers, facets):
     """Normal with relief and thread, base colour, roughness, metalness, light left by the holes.
 
-    With ``side`` above 0 the relief goes into ``facets``, so many along each side of the sample;
+    With ``covers`` above 0 the relief goes into ``facets``, over so many samples along each side;
     the last two returned add to the squared width of their lobes, and of the lobe of them all.
     """
     b1, b2, t, plane, _, between = hit
@@ -151,7 +151,7 @@ def _detail(mesh, look, eye, material, f, hit, place, side, facets):
         su, sv, gu, gv = 0.0, 0.0, 0.0, 0.0
         if material.maps >= 0:
             tint, roughness, metal, su, sv = measured(look.maps, material, u, w, width)
-        if material.texture >= 0 and side == 0:
+        if material.texture >= 0 and covers == 0:
             gu, gv, roughness, share = grain(look.textures, material, roughness, u, w, width)
         if material.texture >= 0 or material.maps >= 0:
             n = unit(along(along(n, -su - gu, place.warp), -sv - gv, place.weft))
@@ -168,9 +168,9 @@ def _detail(mesh, look, eye, material, f, hit, place, side, facets):
         share *= left
         own = covered * look.thread.own
         roughness += covered * max(0.0, 0.6 - roughness)
-    if side > 0:
+    if covers > 0:
         n, within, beside, grey = spread(
-            mesh, look.textures, eye, material, f, place, n, (u, w), t, side, facets
+            mesh, look.textures, eye, material, f, place, n, (u, w), t, covers, facets
         )
         share *= grey
     share *= 1.0 - own
@@ -202,10 +202,10 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, work, fac
     pixel, -1 or -2 where it is the first or second that stands for two, -3 where it does for four.
     """
     material, v = look.materials[mesh.panel[f]], place.v
-    even, side = material.anisotropy == 0.0, 0
+    even, covers, count = material.anisotropy == 0.0, 0, 0
     if faceted(material):
-        side = 2 * SIDE if q == -3 else SIDE
-    bare = _detail(mesh, look, eye, material, f, hit, place, side, facets)
+        covers, count = 2 if q == -3 else 1, SIDE * SIDE
+    bare = _detail(mesh, look, eye, material, f, hit, place, covers, facets)
     n, colour, roughness, metal, kept, within, beside = bare
     if metal != material.metalness:
         look.changed[0] = material
@@ -219,7 +219,6 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, work, fac
     view = view_of(look.tables, material, roughness, colour, dot(warp, v), dot(weft, v), dot(n, v))
     _from_around(look, around, place, material, view, beside, n, work)
     mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
-    count = side * side
     curves = curves_to_eye(look.tables, material, view, facets, count)
     for k in range(len(lights.near)):
         if visible[k] <= 0.0:
@@ -234,7 +233,7 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, work, fac
             l, wider = towards_part(lights, angle, middle, _point(q, part))
             light = visible[k] / parts
             smooth, radius = dot(place.n, l), angle / np.sqrt(len(lights.disc))
-            if side > 0:
+            if count > 0:
                 towards = (l, wider + within, smooth, radius, part, parts)
                 brdf_facets(
                     look.tables, material, mean, view, curves, facets, count, towards, v, f_out
@@ -323,7 +322,7 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, backdrop, ou
     Returns the greatest radiance of the surface, nan where one is not finite.
     """
     work, total, brightest = np.zeros((3, 3)), np.zeros(3), 0.0
-    visible, facets = np.ones(len(lights.near)), np.empty((ROWS, 4 * SIDE * SIDE))
+    visible, facets = np.ones(len(lights.near)), np.empty((ROWS, SIDE * SIDE))
     spread = np.sqrt(dot(row_of(eye.right), row_of(eye.right)))
     spread /= np.sqrt(dot(row_of(eye.first), row_of(eye.first)))
     near_seam = reach(look.thread)
