@@ -24,7 +24,7 @@ from seatlook.pbr.kernels.brdf import (
     sheen_share,
     widened,
 )
-from seatlook.pbr.kernels.grain import WEAVE, filtered, stroke
+from seatlook.pbr.kernels.grain import WEAVE, bilinear, nearest_level, stroke
 from seatlook.pbr.kernels.light import above_horizon
 from seatlook.pbr.kernels.surface import along, dot, minus, row, row_of, unit
 
@@ -84,12 +84,14 @@ def spread(mesh, textures, eye, material, f, place, n, at, t, covers, facets):
     steep = material.texture_depth / material.texture_scale
     texels = textures.texels[material.texture]
     width = np.sqrt(abs(across[0] * down[1] - across[1] * down[0])) / SIDE
+    tile = textures.cells * material.texture_scale
+    level = nearest_level(textures, tile, _SHARP * width)
     bend, bow = _bend(mesh, f, n, across), _bend(mesh, f, n, down)
     mean, variance, share, weight = (0.0, 0.0, 0.0), 0.0, 0.0, 1.0 / (SIDE * SIDE)
     for q in range(SIDE * SIDE):
         x, y = (q % SIDE + 0.5) / SIDE - 0.5, (q // SIDE + 0.5) / SIDE - 0.5
         u, v = at[0] + x * across[0] + y * down[0], at[1] + x * across[1] + y * down[1]
-        su, sv, s2, c = filtered(texels, textures, material, u, v, _SHARP * width)
+        su, sv, s2, c = bilinear(texels, textures, level, u / tile, v / tile)
         m = along(along(n, x, bend), y, bow)
         m = unit(along(along(m, -steep * su, place.warp), -steep * sv, place.weft))
         facets[X, q], facets[Y, q], facets[Z, q] = m

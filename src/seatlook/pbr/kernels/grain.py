@@ -37,7 +37,7 @@ _WEAVE = 4.0
 
 
 @leaf()
-def _bilinear(t, textures, level, u, v):
+def bilinear(t, textures, level, u, v):
     """Tiled value of one map ``t`` at (u, v) in tiles, as four numbers."""
     n = textures.size >> level
     x, y = u * n - 0.5, v * n - 0.5
@@ -57,6 +57,13 @@ def _bilinear(t, textures, level, u, v):
 
 
 @leaf()
+def nearest_level(textures, tile, width):
+    """Level whose texels are nearest to ``width`` [m]."""
+    level = int(max(0.0, np.log2(width * textures.size / tile)) + 0.5)
+    return min(level, len(textures.start) - 1)
+
+
+@leaf()
 def filtered(t, textures, material, u, v, width):
     """Value of one map by texels ``width`` [m] wide, or the finest."""
     tile = textures.cells * material.texture_scale
@@ -66,10 +73,10 @@ def filtered(t, textures, material, u, v, width):
     fine = min(int(level), last)
     coarse = min(fine + 1, last)
     mix = min(1.0, level - fine)
-    low = _bilinear(t, textures, fine, u / tile, v / tile)
+    low = bilinear(t, textures, fine, u / tile, v / tile)
     if mix == 0.0:
         return low
-    high = _bilinear(t, textures, coarse, u / tile, v / tile)
+    high = bilinear(t, textures, coarse, u / tile, v / tile)
     return (
         low[0] + mix * (high[0] - low[0]),
         low[1] + mix * (high[1] - low[1]),
