@@ -16,6 +16,7 @@ class Quality:
     factor : samples per pixel and axis
     rays : shadow rays per sample where a shadow has its edge; 0 for no shadows
     strata : the half-space is seen along strata^2 rays per vertex; 0 leaves it all open
+    facets : of a relief, along each side of a sample or of the four that it stands for
     bounces : how often light may go from cover to cover
     error : FLIP against the path tracer, the worst of ``gallery/work_precision_render.py``, and no
         less than that of the next tier
@@ -24,23 +25,25 @@ class Quality:
     factor: int
     rays: int
     strata: int
+    facets: int
     bounces: int
     error: float
 
 
 # Cheapest first.
 TIERS: dict[str, Quality] = {
-    "T0": Quality(factor=1, rays=0, strata=0, bounces=0, error=0.0722),
-    "T1": Quality(factor=1, rays=1, strata=0, bounces=0, error=0.0710),
-    "T2": Quality(factor=2, rays=4, strata=0, bounces=0, error=0.0710),
-    "T3": Quality(factor=2, rays=4, strata=8, bounces=1, error=0.0424),
-    "T4": Quality(factor=4, rays=4, strata=16, bounces=3, error=0.0337),
+    "T0": Quality(factor=1, rays=0, strata=0, facets=2, bounces=0, error=0.0722),
+    "T1": Quality(factor=1, rays=1, strata=0, facets=2, bounces=0, error=0.0710),
+    "T2": Quality(factor=2, rays=4, strata=0, facets=2, bounces=0, error=0.0710),
+    "T3": Quality(factor=2, rays=4, strata=8, facets=2, bounces=1, error=0.0424),
+    "T4": Quality(factor=4, rays=4, strata=16, facets=2, bounces=3, error=0.0337),
 }
 QUALITIES: dict[str, Quality] = {
     "draft": TIERS["T1"],
     "standard": TIERS["T3"],
-    # A score compares two pictures: one ray of 64 that meets a highlight in only one of them shows.
-    "score": replace(TIERS["T3"], strata=12),
+    # A score compares two pictures: one ray of 64 that meets a highlight in only one of them shows,
+    # and so does the noise of four facets.
+    "score": replace(TIERS["T3"], strata=12, facets=4),
     "high": TIERS["T4"],
     **TIERS,
 }

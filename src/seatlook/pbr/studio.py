@@ -97,6 +97,7 @@ class Studio:
             self._surroundings.light(rig, look, level, camera, ids),
             seen,
             level.factor,
+            level.facets,
             _CARD * 2.5 * 2.0**ev / np.pi * white,
             radiance,
         )

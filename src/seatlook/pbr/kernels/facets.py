@@ -31,8 +31,6 @@ from seatlook.pbr.kernels.surface import along, dot, minus, row, row_of, unit
 # Rows of the room for facets: unit normal, its cosine to the eye, share of the colour.
 X, Y, Z, NOV, SHARE = range(5)
 ROWS = 5
-# Facets along each side of a sample, or of the pixel that it stands for.
-SIDE = 2
 # Texels are as wide as this share of a facet: what many facets leave out averages away, what a
 # wider lobe adds does not.
 _SHARP = 0.25
@@ -69,11 +67,12 @@ def _bend(mesh, f, n, d):
 
 
 @leaf()
-def spread(mesh, textures, eye, material, f, place, n, at, t, covers, facets):
+def spread(mesh, textures, eye, material, f, place, n, at, t, covers, side, facets):
     """Facets of the relief under a sample, or under all that it stands for, into ``facets``.
 
     ``at`` (u, v) [m]: place of the sample in the pattern; ``t`` [m]: distance from the eye; ``n``:
-    normal without the relief; ``covers``: samples along each side that it stands for.
+    normal without the relief; ``covers``: samples along each side that it stands for;
+    ``side``: facets along each side of it.
     Returns the mean normal; what the slopes within a facet, and those of all facets, add to the
     squared width of a lobe; and the share of the colour, to which that of each facet is relative.
     """
@@ -83,13 +82,13 @@ def spread(mesh, textures, eye, material, f, place, n, at, t, covers, facets):
     across, down = (covers * across[0], covers * across[1]), (covers * down[0], covers * down[1])
     steep = material.texture_depth / material.texture_scale
     texels = textures.texels[material.texture]
-    width = np.sqrt(abs(across[0] * down[1] - across[1] * down[0])) / SIDE
+    width = np.sqrt(abs(across[0] * down[1] - across[1] * down[0])) / side
     tile = textures.cells * material.texture_scale
     level = nearest_level(textures, tile, _SHARP * width)
     bend, bow = _bend(mesh, f, n, across), _bend(mesh, f, n, down)
-    mean, variance, share, weight = (0.0, 0.0, 0.0), 0.0, 0.0, 1.0 / (SIDE * SIDE)
-    for q in range(SIDE * SIDE):
-        x, y = (q % SIDE + 0.5) / SIDE - 0.5, (q // SIDE + 0.5) / SIDE - 0.5
+    mean, variance, share, weight = (0.0, 0.0, 0.0), 0.0, 0.0, 1.0 / (side * side)
+    for q in range(side * side):
+        x, y = (q % side + 0.5) / side - 0.5, (q // side + 0.5) / side - 0.5
         u, v = at[0] + x * across[0] + y * down[0], at[1] + x * across[1] + y * down[1]
         su, sv, s2, c = bilinear(texels, textures, level, u / tile, v / tile)
         m = along(along(n, x, bend), y, bow)
@@ -99,7 +98,7 @@ def spread(mesh, textures, eye, material, f, place, n, at, t, covers, facets):
         mean = along(mean, weight, m)
         variance += weight * s2
         share += weight * c
-    for q in range(SIDE * SIDE):
+    for q in range(side * side):
         facets[SHARE, q] /= share
     within = 2.0 * steep * steep * variance
     beside = within + max(0.0, 1.0 - dot(mean, mean))
@@ -184,7 +183,7 @@ def brdf_facets(tables, material, coupling, view, to_eye, facets, count, part, v
     diffuse = lobe = again = fibres = coat_lobe = coat_again = 0.0
     fibre_alpha = material.sheen_roughness**2
     for q in range(count):
-        if q % parts != turn:
+        if (q + 2 * (q // 4) + q // 8) % parts != turn:
             continue
         m = (facets[X, q], facets[Y, q], facets[Z, q])
         c = above_horizon(dot(m, l), smooth, angle)

@@ -10,7 +10,7 @@ from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, brdf_isotropic, view_of
-from seatlook.pbr.kernels.facets import ROWS, SIDE, brdf_facets, curves_to_eye, faceted, spread
+from seatlook.pbr.kernels.facets import ROWS, brdf_facets, curves_to_eye, faceted, spread
 from seatlook.pbr.kernels.grain import Textures, grain, holes
 from seatlook.pbr.kernels.light import (
     SMALL,
@@ -135,11 +135,12 @@ def _place(mesh, around, f, hit):
 
 
 @leaf()
-def _detail(mesh, look, eye, material, f, hit, place, covers, facets):
+def _detail(mesh, look, eye, material, f, hit, place, covers, side, facets):
     """Normal with relief and thread, base colour, roughness, metalness, light left by the holes.
 
-    With ``covers`` above 0 the relief goes into ``facets``, over so many samples along each side;
-    the last two returned add to the squared width of their lobes, and of the lobe of them all.
+    With ``covers`` above 0 the relief goes into ``facets``, ``side`` along each side of as many
+    samples; the last two returned add to the squared width of their lobes, and of the lobe of
+    them all.
     """
     b1, b2, t, plane, _, between = hit
     n, v = place.n, place.v
@@ -170,7 +171,7 @@ def _detail(mesh, look, eye, material, f, hit, place, covers, facets):
         roughness += covered * max(0.0, 0.6 - roughness)
     if covers > 0:
         n, within, beside, grey = spread(
-            mesh, look.textures, eye, material, f, place, n, (u, w), t, covers, facets
+            mesh, look.textures, eye, material, f, place, n, (u, w), t, covers, side, facets
         )
         share *= grey
     share *= 1.0 - own
@@ -194,7 +195,7 @@ def _point(q, part):
 
 
 @leaf()
-def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, work, facets):
+def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, side, work, facets):
     """Radiance of one sample into ``work[0]``; ``work`` is (3, 3), ``facets`` room for its relief.
 
     ``hit``: (weight, weight, distance, face normal, unit ray, angle between samples);
@@ -204,8 +205,8 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, work, fac
     material, v = look.materials[mesh.panel[f]], place.v
     even, covers, count = material.anisotropy == 0.0, 0, 0
     if faceted(material):
-        covers, count = 2 if q == -3 else 1, SIDE * SIDE
-    bare = _detail(mesh, look, eye, material, f, hit, place, covers, facets)
+        covers, count = 2 if q == -3 else 1, side * side
+    bare = _detail(mesh, look, eye, material, f, hit, place, covers, side, facets)
     n, colour, roughness, metal, kept, within, beside = bare
     if metal != material.metalness:
         look.changed[0] = material
@@ -313,16 +314,17 @@ def _alike(mesh, ids, visibility, reach, x, y):
 
 
 @njit(cache=True)
-def shade(mesh, eye, ids, look, lights, around, visibility, factor, backdrop, out):
+def shade(mesh, eye, ids, look, lights, around, visibility, factor, side, backdrop, out):
     """Mean radiance of ``factor`` x ``factor`` samples into each pixel of ``out`` (h, w, 3).
 
     ``ids`` (h factor, w factor): face per sample, -1 for none, where ``backdrop`` (3,) is seen;
-    ``visibility`` likewise, (k, ., .), in 1/255. Of 2 x 2 samples that are alike, only the diagonal
-    is shaded, each for an area twice as large, or one for all where the surface has no relief.
+    ``visibility`` likewise, (k, ., .), in 1/255; ``side``: facets along each side of a relief. Of
+    2 x 2 samples that are alike, only the diagonal is shaded, each for an area twice as large, or
+    one for all where the surface has no relief or facets show it.
     Returns the greatest radiance of the surface, nan where one is not finite.
     """
     work, total, brightest = np.zeros((3, 3)), np.zeros(3), 0.0
-    visible, facets = np.ones(len(lights.near)), np.empty((ROWS, SIDE * SIDE))
+    visible, facets = np.ones(len(lights.near)), np.empty((ROWS, side * side))
     spread = np.sqrt(dot(row_of(eye.right), row_of(eye.right)))
     spread /= np.sqrt(dot(row_of(eye.first), row_of(eye.first)))
     near_seam = reach(look.thread)
@@ -372,7 +374,9 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, backdrop, ou
                 place = _place(mesh, around, f, hit)
             for k in range(len(visible)):
                 visible[k] = visibility[k, j, i] / 255.0
-            sample(mesh, look, eye, lights, around, f, hit, place, point, visible, work, facets)
+            sample(
+                mesh, look, eye, lights, around, f, hit, place, point, visible, side, work, facets
+            )
             for c in range(3):
                 total[c] += weight * work[0, c]
         for c in range(3):
