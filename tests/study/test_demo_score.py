@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
+import dusk
 import numpy as np
 import pytest
 
-from seatlook import io
 from seatlook.model import Appearance, Rig, named_view, sun
 from seatlook.sensory.cross_check import log_ratio
 from seatlook.sensory.observer import OBSERVER
@@ -34,18 +34,7 @@ def view(spoiled):
 @pytest.fixture(scope="module")
 def looks():
     """The supplied textures, and both leathers as the drawn patch has them, without grain."""
-    black, bright, suede = (
-        io.read_material(name).appearance for name in ("black-leather", "bright-leather", "suede")
-    )
-    smooth = replace(bright, texture="none")
-    return {
-        "black": black,
-        "bright": bright,
-        "suede": suede,
-        "smooth black": replace(black, texture="none"),
-        "smooth bright": smooth,
-        "bright rough": replace(smooth, roughness=0.85, coat=0.0),
-    }
+    return dusk.looks()
 
 
 @pytest.fixture(scope="module")
