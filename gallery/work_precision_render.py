@@ -2,10 +2,11 @@
 
 Run it with: python gallery/work_precision_render.py
 
-Truth is Mitsuba 3 with the same BRDF, lights and geometry (``path_tracer``), twice 64 samples per
-pixel with different seeds; half the FLIP between both is its own floor. Pictures of it are kept in
-out/render-reference, rows in docs/charts/work_precision_render.csv; delete either to repeat it.
-A tier's time is that of a further picture with new material and lights: faces seen are kept.
+Truth is Mitsuba 3 with the same BRDF, lights and geometry (``path_tracer``), twice 256 samples per
+pixel with different seeds, in full light 512; half the FLIP between both is its own floor. Pictures
+of it are kept in out/render-reference, rows in docs/charts/work_precision_render.csv; delete either
+to repeat it. A tier's time is that of a further picture with new material and lights: faces seen
+are kept.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import sys
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -35,10 +36,13 @@ from render_error import DIRECT, FULL, camera, compare, look, relief_of, scene  
 from stock_pbr import stock  # noqa: E402
 
 from seatlook.model import Appearance, Rig  # noqa: E402
+from seatlook.pbr.quality import TIERS, Quality  # noqa: E402
 from seatlook.pbr.studio import Studio  # noqa: E402
 
 COLUMNS = ("light", "case", "series", "parameter", "cpu_seconds", "flip", "block_error")
+# Samples per pixel of one pass, and passes of each of two references.
 SAMPLES = 64
+PASSES = {"direct": 4, "full": 8}
 COLOURS = {"seatlook": "C0", "seatlook, with grain": "C1", "Mitsuba 3": "C2", "PyVista PBR": "C3"}
 BARS = {"direct": 0.006, "full": 0.02}
 
@@ -78,12 +82,14 @@ def cases() -> Iterator[Case]:
                     yield Case(light, rig, material, textured)
 
 
-def reference(studio: Studio, case: Case, seed: int) -> np.ndarray:
+def reference(studio: Studio, case: Case, which: int) -> np.ndarray:
     """Radiance by path tracing, from the disk where it has been made before."""
-    path = KEPT / f"{case.name}-{SAMPLES}-{seed}.npy"
+    passes = PASSES[case.light]
+    path = KEPT / f"{case.name}-{passes * SAMPLES}-{which}.npy"
     if not path.exists():
         KEPT.mkdir(parents=True, exist_ok=True)
-        np.save(path, traced(studio, case, SAMPLES, seed))
+        seeds = 100 + 50 * which + np.arange(passes)
+        np.save(path, sum(traced(studio, case, SAMPLES, int(s)) for s in seeds) / passes)
     return np.load(path)
 
 
@@ -95,17 +101,20 @@ def traced(studio: Studio, case: Case, spp: int, seed: int) -> np.ndarray:
     )  # fmt: skip
 
 
-def drawn(studio: Studio, case: Case, tier: str) -> np.ndarray:
+def drawn(studio: Studio, case: Case, tier: Quality) -> np.ndarray:
     """Radiance by seatlook."""
     return studio.render(case.appearance, rig=case.rig, camera=camera(), quality=tier).radiance
 
 
 def contenders(studio: Studio, case: Case) -> Iterator[tuple[str, str, Callable[[], np.ndarray]]]:
     """Yield series, parameter and what makes the picture."""
-    # In direct light alone there is nothing for the better tiers to add but samples.
-    tiers = ("T0", "T1", "T2") if case.light == "direct" else ("T0", "T1", "T2", "T3", "T4")
-    for tier in tiers:
-        yield "seatlook", tier, lambda tier=tier: drawn(studio, case, tier)
+    tiers = dict(TIERS)
+    if case.light == "direct":
+        # In direct light alone T3 has nothing to add, and T4 nothing but samples.
+        del tiers["T3"]
+        tiers["T4"] = replace(tiers["T4"], strata=0, bounces=0)
+    for name, tier in tiers.items():
+        yield "seatlook", name, lambda tier=tier: drawn(studio, case, tier)
     if case.textured:
         return
     for spp in (4, 16):
@@ -127,7 +136,7 @@ def measure(wanted: Callable[[Case], bool] = lambda case: True) -> list[dict[str
         missing = [c for c in contenders(studio, case) if (case.name, *c[:2]) not in done]
         if not missing:
             continue
-        first, second = (reference(studio, case, seed) for seed in (0, 1))
+        first, second = (reference(studio, case, which) for which in (0, 1))
         truth = (first + second) / 2
         kwargs = {"rig": case.rig, "cover": cover_of(studio)}
         floor = compare(first, second, **kwargs)

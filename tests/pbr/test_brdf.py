@@ -176,3 +176,26 @@ def test_ggx_is_a_distribution():
     for ax, ay in ((0.25, 0.25), (0.5, 0.2), (1.0, 1.0)):
         area = 2 * np.pi * (brdf.D_GGX(ax, ay, h) * mu).mean()
         assert area == pytest.approx(1, abs=2e-3)
+
+
+@pytest.mark.parametrize("alpha", [0.1, 0.2, 0.4])
+def test_lobe_over_a_small_spread_is_the_mean_of_lobes(alpha):
+    """Half-vectors that vary by 5 % of the squared width: peak, shoulder and tail."""
+    more = 0.05 * alpha**2
+    x, w = np.polynomial.hermite_e.hermegauss(8)
+    tilt = np.sqrt(more / 2) * np.stack(np.meshgrid(x, x), axis=-1).reshape(-1, 2)
+    weight = np.outer(w, w).ravel() / w.sum() ** 2
+    n = np.column_stack([-tilt, np.ones(len(tilt))])
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    lobe, bare = kernel.lobe_of(alpha, more), kernel.lobe_of(alpha, 0.0)
+    for slope in (0.0, 0.5, 1.0, 2.0, 5.0):
+        h = np.array([slope * alpha, 0.0, 1.0]) / np.hypot(1.0, slope * alpha)
+        want = sum(q * kernel.GGX(bare, 1.0, 1.0, c) for q, c in zip(weight, n @ h, strict=True))
+        assert kernel.GGX(lobe, 1.0, 1.0, h[2]) == pytest.approx(want, rel=0.02)
+
+
+def test_a_spread_lobe_keeps_its_light():
+    mu = (np.arange(20_000) + 0.5) / 20_000
+    lobe = kernel.lobe_of(0.3, 0.05)
+    area = sum(4 * kernel.GGX(lobe, 1.0, 1.0, c) * c for c in mu) * 2 * np.pi / len(mu)
+    assert area == pytest.approx(1.0, rel=2e-3)

@@ -18,11 +18,13 @@ from seatlook.pbr.kernels.facets import (
     X,
     Y,
     Z,
+    _half,
+    _upwards,
     brdf_facets,
-    curves_to_eye,
+    layers_to_eye,
 )
 from seatlook.pbr.kernels.light import above_horizon
-from seatlook.pbr.kernels.tables import coupling, coupling_at
+from seatlook.pbr.kernels.tables import coupling, coupling_at, fibres, layers
 from seatlook.pbr.studio import pack_materials
 from seatlook.pbr.tables import load_tables
 
@@ -50,12 +52,15 @@ def reflected(appearance: Appearance, normals, v, l, parts):
     )
     facets = np.empty((ROWS, COUNT))
     facets[[X, Y, Z]], facets[NOV], facets[SHARE] = normals.T, normals @ v, 1.0
-    curves = curves_to_eye(tables, materials[0], view, facets, COUNT)
+    at, nap = np.empty((1, 129, 5)), np.empty((1, 129))
+    layers(tables, materials, at)
+    fibres(tables, materials, nap)
+    layers_to_eye(at[0], facets, COUNT)
     mean = coupling_at(means[0], view.table_roughness)
     total, out = np.zeros(3), np.empty(3)
     for turn in range(parts):
         part = (tuple(l), 0.0, float(l[2]), 0.0, turn, parts)
-        brdf_facets(tables, materials[0], mean, view, curves, facets, COUNT, part, tuple(v), out)
+        brdf_facets(materials[0], at[0], nap[0], mean, view, facets, COUNT, part, tuple(v), out)
         total += out / parts
     return total
 
@@ -96,3 +101,38 @@ def test_relief_is_dark_where_the_light_has_set_behind_the_surface():
     for cosine, smooth in ((0.3, 0.02), (0.05, -0.03), (-0.02, 0.04), (0.4, 0.5), (0.2, -0.2)):
         want = np.where((cosine + x > 0) & (smooth + x > 0), cosine + x, 0.0).mean()
         assert above_horizon(cosine, smooth, 0.1) == pytest.approx(want, abs=1e-5)
+
+
+def seen_half_vectors(alpha, v, n):
+    """Half-vectors (n, 3) of a GGX lobe at (0, 0, 1) as seen along ``v``; Heitz 2018."""
+    a, b = np.random.default_rng(0).random((2, n))
+    w = unit(np.array([alpha * v[0], 0.0, v[2]]))
+    x, y = np.sqrt(a) * np.cos(2 * np.pi * b), np.sqrt(a) * np.sin(2 * np.pi * b)
+    s = 0.5 * (1 + w[2])
+    y = (1 - s) * np.sqrt(1 - x**2) + s * y
+    z = np.sqrt(np.maximum(0, 1 - x**2 - y**2))
+    h = np.stack([z * w[0] - y * w[2], x, z * w[2] + y * w[0]], axis=1)
+    return unit(h * [alpha, alpha, 1.0])
+
+
+@pytest.mark.parametrize("alpha", [0.09, 0.16, 0.49, 0.81])
+def test_what_tilted_facets_mirror_below_the_surface_is_lost(alpha):
+    """Share of a facet's own lobe that goes above the surface, against sampled half-vectors."""
+    off = []
+    for MoV in (0.1, 0.2, 0.35, 0.6, 0.9):
+        v = np.array([np.sqrt(1 - MoV**2), 0.0, MoV])
+        h = seen_half_vectors(alpha, v, 20_000)
+        l = 2 * (h @ v)[:, None] * h - v
+        c = np.maximum(l[:, 2], 1e-9)
+        root = [np.sqrt(x**2 + alpha**2 * (1 - x**2)) / x for x in (np.array(MoV), c)]
+        fresnel = 0.04 + 0.96 * (1 - h @ v) ** 5
+        weight = np.where(l[:, 2] > 0, fresnel * (1 + root[0]) / (root[0] + root[1]), 0.0)
+        for tilt in (-0.2, -0.1, 0.0, 0.1, 0.2, 0.3):
+            n = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
+            if n @ v < 0.05:
+                continue
+            want = weight[l @ n > 0].sum() / weight.sum()
+            up = 2 * MoV * n[2] - n @ v
+            off.append(_upwards(_half(up), _half(MoV), alpha**2) - want)
+    assert np.abs(off).max() < 0.12
+    assert abs(np.mean(off)) < 0.02

@@ -35,6 +35,8 @@ Looks = Appearance | Mapping[str, Appearance] | None
 _CARD = 0.18
 # Foam in front of the cover by less than this [m] is a coarse foam face that cuts through it.
 _COMPRESSED = 0.02
+# Nodes at which what a material lets through, and its nap, are tabulated.
+_NODES = 129
 # How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
 _OCCLUDER = 0.04
 
@@ -74,11 +76,11 @@ class Studio:
         *,
         rig: Rig,
         camera: Camera,
-        quality: str = "standard",
+        quality: str | Quality = "standard",
         target_error: float | None = None,
     ) -> Image:
         """Draw the cover; see :func:`render`."""
-        level = quality_named(quality)
+        level = quality if isinstance(quality, Quality) else quality_named(quality)
         if target_error is not None:
             level = quality_within(target_error)
         look = self._look(appearance)
@@ -213,10 +215,15 @@ class Studio:
         materials = pack_materials(looks)
         couplings = np.empty((len(materials), len(load_tables().scale_mean)))
         tables.coupling(load_tables(), materials, couplings)
+        layers, fibres = np.empty((len(materials), _NODES, 5)), np.empty((len(materials), _NODES))
+        tables.layers(load_tables(), materials, layers)
+        tables.fibres(load_tables(), materials, fibres)
         used = {int(k) for k in materials["texture"] if k >= 0}
         return shade.Look(
             materials,
             couplings,
+            layers,
+            fibres,
             load_tables(),
             load_textures(*used),
             load_maps(map_sets(looks)),
@@ -231,7 +238,7 @@ def render(
     *,
     rig: Rig,
     camera: Camera,
-    quality: str = "standard",
+    quality: str | Quality = "standard",
     target_error: float | None = None,
 ) -> Image:
     """Draw a solved cover under a rig.
@@ -242,7 +249,7 @@ def render(
         from panel name to Appearance; panels not named keep their own
     quality : ``draft`` (hard shadows, no smoothing), ``standard`` (2 x 2 samples, soft shadows,
         covered sky, one bounce) or ``high`` (4 x 4, three bounces); also ``T0`` to ``T4``, of
-        which these are T1, T3 and T4
+        which these are T1, T3 and T4, or a :class:`~seatlook.pbr.quality.Quality`
     target_error : instead of ``quality``: the cheapest tier whose charted FLIP against path
         tracing is at most this
 

@@ -65,14 +65,39 @@ def V_SmithGGXCorrelated(alpha_x, alpha_y, ToV, BoV, NoV, ToL, BoL, NoL):
     return 0.5 / (view + light)
 
 
+class Lobe(NamedTuple):
+    """GGX lobe whose half-vectors are spread: squared width, and strength of what that bends.
+
+    See ``lobe_of``.
+    """
+
+    squared: float
+    bent: float
+
+
 @leaf()
-def GGX(alpha, NoV, NoL, NoH):
-    """Product of both terms above for a lobe as wide along as across."""
+def lobe_of(alpha, more):
+    """Lobe of width ``alpha`` seen over half-vectors that vary by ``more``, per axis ``more / 2``.
+
+    A GGX lobe that is only wider has brighter tails, in proportion to its squared width; those of
+    a mean over a small disc or facet stay as they are. Exact to first order in ``more``.
+    """
     a2 = alpha * alpha
-    d = NoH * NoH * (a2 - 1.0) + 1.0
-    view = NoL * np.sqrt(a2 + (1.0 - a2) * NoV * NoV)
-    light = NoV * np.sqrt(a2 + (1.0 - a2) * NoL * NoL)
-    return a2 / (2.0 * np.pi * d * d * (view + light))
+    b2 = a2 + more
+    return Lobe(b2, more * a2 / (b2 * b2))
+
+
+@leaf()
+def GGX(lobe, NoV, NoL, NoH):
+    """Product of both terms above for a lobe as wide along as across."""
+    b2, sine2 = lobe.squared, 1.0 - NoH * NoH
+    inverse = 1.0 / (b2 + (1.0 - b2) * sine2)
+    # Share of the half-vectors that lie closer to the normal.
+    t = sine2 * inverse
+    view = NoL * np.sqrt(b2 + (1.0 - b2) * NoV * NoV)
+    light = NoV * np.sqrt(b2 + (1.0 - b2) * NoL * NoL)
+    bent = 1.0 + lobe.bent * (6.0 * t * (1.0 - t) - 1.0)
+    return bent * b2 * inverse * inverse / (2.0 * np.pi * (view + light))
 
 
 @leaf()
@@ -317,7 +342,7 @@ def brdf(tables, material, coupling, view, wider, ToL, BoL, NoL, out):
 @leaf()
 def brdf_isotropic(tables, material, coupling, view, wider, NoL, NoH, LoH, out):
     """Same where the lobe is as wide along as across, by the cosines alone."""
-    lobe = GGX(widened(view.alpha_x, wider), view.NoV, NoL, NoH)
+    lobe = GGX(lobe_of(view.alpha_x, wider), view.NoV, NoL, NoH)
     _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out)
 
 
@@ -337,7 +362,7 @@ def _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out):
         _add_sheen(tables, material, min(here.coat, there.coat), view.NoV, NoL, NoH, out)
     share = coat_share(material)
     if share > 0.0:
-        lobe = GGX(widened(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
+        lobe = GGX(lobe_of(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
         again = here.coat_lost * there.coat_lost / (np.pi * (1.0 - view.means.coat))
         coat = share * ((COAT_F0 + (1.0 - COAT_F0) * m) * lobe + view.means.coat_again * again)
         for c in range(3):

@@ -2,13 +2,10 @@
 
 A grain's slopes reach further than a polished lobe is wide, and are no Gaussian. One lobe at their
 mean, widened by their variance (Olano and Baker 2010), has tails that are too bright: those of GGX
-grow with its width squared. So the lobes are summed over facets, and only what varies slowly is
-read at three cosines for all of them.
+grow with its width squared. So the lobes are summed over facets.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 
@@ -16,21 +13,19 @@ from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import (
     COAT_F0,
     GGX,
-    D_Charlie,
     V_Neubelt,
     coat_share,
-    layers_at,
-    lookup_mean,
+    lobe_of,
     sheen_share,
-    widened,
 )
 from seatlook.pbr.kernels.grain import WEAVE, bilinear, nearest_level, stroke
 from seatlook.pbr.kernels.light import above_horizon
 from seatlook.pbr.kernels.surface import along, dot, minus, row, row_of, unit
 
-# Rows of the room for facets: unit normal, its cosine to the eye, share of the colour.
-X, Y, Z, NOV, SHARE = range(5)
-ROWS = 5
+# Rows of the room for facets: unit normal, its cosine to the eye, share of the colour, and layers
+# there.
+X, Y, Z, NOV, SHARE, BASE, NAP, LOST, COAT, COAT_LOST = range(10)
+ROWS = 10
 # Texels are as wide as this share of a facet: what many facets leave out averages away, what a
 # wider lobe adds does not.
 _SHARP = 0.25
@@ -87,8 +82,12 @@ def spread(mesh, textures, eye, material, f, place, n, at, t, covers, side, face
     level = nearest_level(textures, tile, _SHARP * width)
     bend, bow = _bend(mesh, f, n, across), _bend(mesh, f, n, down)
     mean, variance, share, weight = (0.0, 0.0, 0.0), 0.0, 0.0, 1.0 / (side * side)
+    line, column = 0, 0
     for q in range(side * side):
-        x, y = (q % side + 0.5) / side - 0.5, (q // side + 0.5) / side - 0.5
+        x, y = (column + 0.5) / side - 0.5, (line + 0.5) / side - 0.5
+        column += 1
+        if column == side:
+            line, column = line + 1, 0
         u, v = at[0] + x * across[0] + y * down[0], at[1] + x * across[1] + y * down[1]
         su, sv, s2, c = bilinear(texels, textures, level, u / tile, v / tile)
         m = along(along(n, x, bend), y, bow)
@@ -105,108 +104,118 @@ def spread(mesh, textures, eye, material, f, place, n, at, t, covers, side, face
     return unit(mean), within, beside, share * stroke(material, at[0], at[1])
 
 
-class Curves(NamedTuple):
-    """Layers over a cosine: ``a + x (b + x c)`` with x = ``scale`` (cosine - ``low``)."""
-
-    low: float
-    scale: float
-    base: tuple[float, float, float]
-    nap: tuple[float, float, float]
-    lost: tuple[float, float, float]
-    coat: tuple[float, float, float]
-    coat_lost: tuple[float, float, float]
-
-
 @leaf()
-def _parabola(first, middle, last):
-    """Coefficients of the parabola through values at 0, 1/2 and 1."""
-    return first, 4.0 * middle - 3.0 * first - last, 2.0 * (first + last) - 4.0 * middle
-
-
-@leaf()
-def _at(curve, x):
-    return curve[0] + x * (curve[1] + x * curve[2])
-
-
-@leaf()
-def _curves(tables, material, view, low, high):
-    """Layers between two cosines, each a parabola: a chord would lie below all of them."""
-    low = min(max(low, 0.0), 0.99)
-    high = min(max(high, low + 1e-3), 1.0)
-    a = layers_at(tables, material, view.rows, view.means, low)
-    b = layers_at(tables, material, view.rows, view.means, 0.5 * (low + high))
-    c = layers_at(tables, material, view.rows, view.means, high)
-    return Curves(
-        low,
-        1.0 / (high - low),
-        _parabola(a.base, b.base, c.base),
-        _parabola(a.nap, b.nap, c.nap),
-        _parabola(1.0 - a.scale - a.bias, 1.0 - b.scale - b.bias, 1.0 - c.scale - c.bias),
-        _parabola(a.coat, b.coat, c.coat),
-        _parabola(a.coat_lost, b.coat_lost, c.coat_lost),
+def _layers(layers, mu):
+    """Layers of a material at one cosine, see ``tables.layers``."""
+    x = np.sqrt(mu) * (len(layers) - 1)
+    j = min(int(x), len(layers) - 2)
+    b = x - j
+    low, high = layers[j], layers[j + 1]
+    return (
+        low[0] + b * (high[0] - low[0]),
+        low[1] + b * (high[1] - low[1]),
+        low[2] + b * (high[2] - low[2]),
+        low[3] + b * (high[3] - low[3]),
+        low[4] + b * (high[4] - low[4]),
     )
 
 
 @leaf()
-def curves_to_eye(tables, material, view, facets, count):
-    """Layers over the facets' cosines to the eye."""
-    if count == 0:
-        o = (0.0, 0.0, 0.0)
-        return Curves(0.0, 0.0, o, o, o, o, o)
-    low, high = 1.0, 0.0
-    for q in range(count):
-        low, high = min(low, facets[NOV, q]), max(high, facets[NOV, q])
-    return _curves(tables, material, view, low, high)
+def _fibres(fibres, sine2):
+    """Distribution of the nap at one squared sine, see ``tables.fibres``."""
+    x = sine2 * (len(fibres) - 1)
+    j = min(int(x), len(fibres) - 2)
+    return fibres[j] + (x - j) * (fibres[j + 1] - fibres[j])
 
 
 @leaf()
-def brdf_facets(tables, material, coupling, view, to_eye, facets, count, part, v, out):
+def layers_to_eye(layers, facets, count):
+    """Layers at the facets' cosines to the eye, into ``facets``."""
+    for q in range(count):
+        here = _layers(layers, facets[NOV, q])
+        facets[BASE, q], facets[NAP, q], facets[LOST, q] = here[0], here[1], here[2]
+        facets[COAT, q], facets[COAT_LOST, q] = here[3], here[4]
+
+
+@leaf()
+def _half(cosine):
+    """Tangent of half the elevation at whose sine it is."""
+    return cosine / (1.0 + np.sqrt(max(0.0, 1.0 - cosine * cosine)))
+
+
+@leaf()
+def _upwards(up, own, squared):
+    """Share of a lobe that goes up, of what goes up from its own surface.
+
+    ``up, own``: tangents of half the elevations of the direction mirrored at its middle, above
+    either surface. Half-vectors with the slopes of GGX tilt back by less in these shares.
+    """
+    here = 1.0 + up / np.sqrt(up * up + squared)
+    return min(1.0, here / (1.0 + own / np.sqrt(own * own + squared)))
+
+
+@leaf()
+def mirrored_facets(material, view, facets, count, n, within, v):
+    """Shares of base and coat that facets mirror, relative to one lobe at their mean normal.
+
+    ``n``: normal without the relief, below which what they mirror is lost; ``within``: as
+    ``spread`` returns it.
+    """
+    base = coat = 0.0
+    base_width, coat_width = view.alpha_x**2 + within, material.coat_roughness**4 + within
+    whole, top = view.layers.nap - view.layers.base, 1.0 - view.layers.coat
+    NoV = dot(n, v)
+    for q in range(count):
+        MoV = facets[NOV, q]
+        MoN = facets[X, q] * n[0] + facets[Y, q] * n[1] + facets[Z, q] * n[2]
+        up, own = _half(min(1.0, max(-1.0, 2.0 * MoV * MoN - NoV))), _half(MoV)
+        base += _upwards(up, own, base_width) * (facets[NAP, q] - facets[BASE, q])
+        if top > 0.0:
+            coat += _upwards(up, own, coat_width) * (1.0 - facets[COAT, q])
+    return (
+        base / (count * whole) if whole > 1e-6 else 1.0,
+        coat / (count * top) if top > 1e-6 else 1.0,
+    )
+
+
+@leaf()
+def brdf_facets(material, layers, fibres, coupling, view, facets, count, part, v, out):
     """Mean over ``count`` facets of BRDF times cosine, into ``out`` (3,).
 
-    ``part``: direction of the light, what it adds to the squared width of the lobes, cosine from
-    the surface without its relief, angular radius, and which part of how many it is: each facet
-    looks at one of them. The other arguments as for ``brdf``.
+    ``layers, fibres``: the material's, see ``tables``; ``part``: direction of the light, what it
+    adds to the squared width of the lobes, cosine from the surface without its relief,
+    angular radius, and which part of 1, 2 or 4 it is: each facet looks at one of them. The other
+    arguments as for ``brdf``.
     """
     l, wider, smooth, angle, turn, parts = part
     h = unit(along(v, 1.0, l))
     LoH = min(1.0, dot(l, h))
-    low, high = 1.0, -1.0
-    for q in range(count):
-        c = facets[X, q] * l[0] + facets[Y, q] * l[1] + facets[Z, q] * l[2]
-        low, high = min(low, c), max(high, c)
-    out[0] = out[1] = out[2] = 0.0
-    if high <= -angle:
-        return
-    to_light = _curves(tables, material, view, low, high)
     coat, nap = coat_share(material), sheen_share(material)
-    alpha, coat_alpha = widened(view.alpha_x, wider), widened(material.coat_roughness**2, wider)
-    diffuse = lobe = again = fibres = coat_lobe = coat_again = 0.0
-    fibre_alpha = material.sheen_roughness**2
+    base_lobe, top_lobe = lobe_of(view.alpha_x, wider), lobe_of(material.coat_roughness**2, wider)
+    diffuse = lobe = again = nap_lobe = coat_lobe = coat_again = 0.0
     for q in range(count):
-        if (q + 2 * (q // 4) + q // 8) % parts != turn:
+        if (q + 2 * (q >> 2) + (q >> 3)) & (parts - 1) != turn:
             continue
         m = (facets[X, q], facets[Y, q], facets[Z, q])
         c = above_horizon(dot(m, l), smooth, angle)
         if c <= 1e-5:
             continue
         NoV, NoH = facets[NOV, q], min(1.0, dot(m, h))
-        x = (NoV - to_eye.low) * to_eye.scale
-        y = min(1.0, max(0.0, (c - to_light.low) * to_light.scale))
-        below = c * min(_at(to_eye.nap, x), _at(to_light.nap, y))
-        diffuse += c * facets[SHARE, q] * _at(to_eye.base, x) * _at(to_light.base, y)
-        again += below * _at(to_eye.lost, x) * _at(to_light.lost, y)
-        lobe += below * GGX(alpha, NoV, c, NoH)
+        base, below, lost, under, coat_lost = _layers(layers, min(1.0, c))
+        below = c * min(facets[NAP, q], below)
+        diffuse += c * facets[SHARE, q] * facets[BASE, q] * base
+        again += below * facets[LOST, q] * lost
+        lobe += below * GGX(base_lobe, NoV, c, NoH)
         if nap > 0.0:
-            under = c * min(_at(to_eye.coat, x), _at(to_light.coat, y))
-            fibres += under * D_Charlie(fibre_alpha, NoH) * V_Neubelt(NoV, c)
+            under = c * min(facets[COAT, q], under)
+            nap_lobe += under * _fibres(fibres, 1.0 - NoH * NoH) * V_Neubelt(NoV, c)
         if coat > 0.0:
-            coat_lobe += c * GGX(coat_alpha, NoV, c, NoH)
-            coat_again += c * _at(to_eye.coat_lost, x) * _at(to_light.coat_lost, y)
+            coat_lobe += c * GGX(top_lobe, NoV, c, NoH)
+            coat_again += c * facets[COAT_LOST, q] * coat_lost
     weight = parts / count
     diffuse *= weight * (1.0 - material.metalness) / (np.pi * coupling)
     again *= weight / (np.pi * (1.0 - view.means.base))
-    fibres *= weight * (1.0 - material.metalness)
-    fibres *= lookup_mean(tables.sheen_norm, material.sheen_roughness)
+    nap_lobe *= weight * (1.0 - material.metalness)
     fresnel = 1.0 - LoH
     fresnel *= fresnel * fresnel * fresnel * fresnel
     top = 0.0
@@ -216,4 +225,4 @@ def brdf_facets(tables, material, coupling, view, to_eye, facets, count, part, v
     for k in range(3):
         out[k] = weight * (view.f0[k] + (view.f90[k] - view.f0[k]) * fresnel) * lobe
         out[k] += view.again[k] * again + view.colour[k] * diffuse
-        out[k] += fibres * material.sheen[k] + weight * coat * top
+        out[k] += nap_lobe * material.sheen[k] + weight * coat * top

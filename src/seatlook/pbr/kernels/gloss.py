@@ -14,6 +14,7 @@ from seatlook.pbr.kernels.brdf import (
     albedo_towards,
     brdf,
     coat_share,
+    lobe_of,
     view_of,
 )
 from seatlook.pbr.kernels.bvh import new_stack
@@ -82,13 +83,13 @@ def _reflectance(material, n, v, d):
     metal, f0 = material.metalness, material.f0
     f0 += metal * ((material.albedo[0] + material.albedo[1] + material.albedo[2]) / 3.0 - f0)
     value = F_Schlick(f0, min(1.0, 50.0 * f0), LoH) * GGX(
-        max(material.roughness**2, MIN_ALPHA), NoV, NoL, NoH
+        lobe_of(max(material.roughness**2, MIN_ALPHA), 0.0), NoV, NoL, NoH
     )
     share = coat_share(material)
     if share > 0.0:
         coat = F_Schlick(COAT_F0, 1.0, LoH)
         value *= 1.0 - share * coat
-        value += share * coat * GGX(material.coat_roughness**2, NoV, NoL, NoH)
+        value += share * coat * GGX(lobe_of(material.coat_roughness**2, 0.0), NoV, NoL, NoH)
     return value * NoL
 
 

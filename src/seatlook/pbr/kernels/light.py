@@ -75,18 +75,44 @@ def angle_of(lights, k, p):
 
 @leaf()
 def towards_part(lights, angle, l, q):
-    """Unit direction to point q of a light's disc around ``l``, and how wide its part is.
+    """Unit direction to point q of a light's disc around ``l``, how wide its part is, its share.
 
     The second value is what the part adds to the squared width of a lobe: twice the variance of
-    the half-vectors, a sixteenth of the squared angle over the whole disc per axis.
+    the half-vectors, a sixteenth of the squared angle over the whole disc per axis. By the third
+    the parts together light a plane facing ``l`` like the whole.
     """
     wider = 0.125 * angle * angle
     # Smaller than any lobe: the middle stands for all.
     if angle < SMALL:
-        return l, wider
+        return l, wider, 1.0
     t, s = across(l)
     d = along(along(l, angle * lights.disc[q, 0], t), angle * lights.disc[q, 1], s)
-    return unit(d), wider / len(lights.disc)
+    length = np.sqrt(dot(d, d))
+    scale = 1.0 / length
+    d = (d[0] * scale, d[1] * scale, d[2] * scale)
+    return d, wider / len(lights.disc), length
+
+
+@leaf()
+def parts_of(q, count, points):
+    """At how many of the ``points`` of a light's disc sample q looks, with ``count`` facets.
+
+    -3 stands for a pixel, -1 and -2 for half of one. Facets share four points among themselves:
+    if all of a sample looked at one, its light would go with its place.
+    """
+    if q == -3 or (q >= 0 and count > 0 and points >= 4):
+        return 4
+    return 1 if q >= 0 else 2
+
+
+@leaf()
+def point_of(q, part, parts, points):
+    """Point of the light's disc at which one of the parts of sample q looks."""
+    if q >= 0:
+        return (q + part * (points // parts)) % points
+    if q == -3:
+        return part
+    return 3 * part if q == -1 else 1 + part
 
 
 @leaf()

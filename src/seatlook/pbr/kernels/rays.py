@@ -64,9 +64,11 @@ def _to_middle(disc):
 
 @leaf()
 def _reaches(bvh, p, n, d, far, stack):
-    """Whether a ray from ``p`` along ``d`` comes ``far``; ``n``: normal of the plane it leaves."""
-    side = ABOVE if dot(n, d) > 0.0 else -ABOVE
-    o = along(p, side, n)
+    """Whether a ray from ``p`` along ``d`` comes ``far``; ``n``: normal of the plane it leaves.
+
+    It starts above the plane even where it goes below: the curved surface is still lit there.
+    """
+    o = along(p, ABOVE, n)
     return not occluded(bvh, o[0], o[1], o[2], d[0], d[1], d[2], 0.0, far, stack)
 
 

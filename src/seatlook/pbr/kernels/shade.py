@@ -10,7 +10,14 @@ from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, brdf_isotropic, view_of
-from seatlook.pbr.kernels.facets import ROWS, brdf_facets, curves_to_eye, faceted, spread
+from seatlook.pbr.kernels.facets import (
+    ROWS,
+    brdf_facets,
+    faceted,
+    layers_to_eye,
+    mirrored_facets,
+    spread,
+)
 from seatlook.pbr.kernels.grain import Textures, grain, holes
 from seatlook.pbr.kernels.light import (
     SMALL,
@@ -18,6 +25,8 @@ from seatlook.pbr.kernels.light import (
     angle_of,
     arriving,
     panorama_towards,
+    parts_of,
+    point_of,
     towards_part,
 )
 from seatlook.pbr.kernels.measured import Measured, measured
@@ -45,12 +54,14 @@ class Look(NamedTuple):
     """What the surface is made of.
 
     ``materials`` (p,): records of ``brdf.MATERIAL`` per panel; ``couplings`` (p, k): mean of what
-    reaches their diffuse base, over roughness; ``changed`` (1,): room for a record of a sample
-    whose metalness is that of a map.
+    reaches their diffuse base, over roughness; ``layers`` (p, n, 5) and ``fibres`` (p, n): see
+    ``tables``; ``changed`` (1,): room for a record of a sample whose metalness is that of a map.
     """
 
     materials: npt.NDArray[np.void]
     couplings: npt.NDArray[np.float64]
+    layers: npt.NDArray[np.float64]
+    fibres: npt.NDArray[np.float64]
     tables: Tables
     textures: Textures
     maps: Measured
@@ -185,16 +196,6 @@ def _detail(mesh, look, eye, material, f, hit, place, covers, side, facets):
 
 
 @leaf()
-def _point(q, part):
-    """Point of the light's disc for part of sample q; -3 stands for a pixel, -1 and -2 for half."""
-    if q >= 0:
-        return q
-    if q == -3:
-        return part
-    return 3 * part if q == -1 else 1 + part
-
-
-@leaf()
 def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, side, work, facets):
     """Radiance of one sample into ``work[0]``; ``work`` is (3, 3), ``facets`` room for its relief.
 
@@ -208,6 +209,8 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, side, wor
         covers, count = 2 if q == -3 else 1, side * side
     bare = _detail(mesh, look, eye, material, f, hit, place, covers, side, facets)
     n, colour, roughness, metal, kept, within, beside = bare
+    if metal != material.metalness or roughness != material.roughness:
+        count = 0  # of such a sample the layers are not at hand: one lobe shows its relief
     if metal != material.metalness:
         look.changed[0] = material
         look.changed[0].metalness = metal
@@ -218,27 +221,28 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, side, wor
         warp, weft = frame(n, warp)
     out, f_out = work[0], work[1]
     view = view_of(look.tables, material, roughness, colour, dot(warp, v), dot(weft, v), dot(n, v))
-    _from_around(look, around, place, material, view, beside, n, work)
     mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
-    curves = curves_to_eye(look.tables, material, view, facets, count)
+    layers, fibres = look.layers[mesh.panel[f]], look.fibres[mesh.panel[f]]
+    shares = (1.0, 1.0)
+    if count > 0:
+        layers_to_eye(layers, facets, count)
+        shares = mirrored_facets(material, view, facets, count, place.n, within, v)
+    _from_around(look, around, place, material, view, beside, n, shares, work)
     for k in range(len(lights.near)):
         if visible[k] <= 0.0:
             continue
         middle, e = arriving(lights, k, place.p)
         angle = angle_of(lights, k, place.p)
-        # A sample that stands for several looks at as many points of the light.
-        parts = 1
-        if q < 0 and angle >= SMALL:
-            parts = 4 if q == -3 else 2
+        points = len(lights.disc)
+        parts = parts_of(q, count, points) if angle >= SMALL else 1
         for part in range(parts):
-            l, wider = towards_part(lights, angle, middle, _point(q, part))
-            light = visible[k] / parts
-            smooth, radius = dot(place.n, l), angle / np.sqrt(len(lights.disc))
+            point = point_of(q, part, parts, points)
+            l, wider, share = towards_part(lights, angle, middle, point)
+            light = visible[k] * share / parts
+            smooth, radius = dot(place.n, l), angle / np.sqrt(points)
             if count > 0:
                 towards = (l, wider + within, smooth, radius, part, parts)
-                brdf_facets(
-                    look.tables, material, mean, view, curves, facets, count, towards, v, f_out
-                )
+                brdf_facets(material, layers, fibres, mean, view, facets, count, towards, v, f_out)
                 for c in range(3):
                     out[c] += f_out[c] * e[c] * light
                 continue
@@ -248,7 +252,8 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, side, wor
             if even:
                 h = unit(along(v, 1.0, l))
                 NoH, LoH = min(1.0, dot(n, h)), min(1.0, dot(l, h))
-                brdf_isotropic(look.tables, material, mean, view, wider, NoL, NoH, LoH, f_out)
+                more = wider + beside
+                brdf_isotropic(look.tables, material, mean, view, more, NoL, NoH, LoH, f_out)
             else:
                 x, y = dot(warp, l), dot(weft, l)
                 brdf(look.tables, material, mean, view, wider, x, y, NoL, f_out)
@@ -264,10 +269,13 @@ def _blurred(roughness, more):
 
 
 @leaf()
-def _from_around(look, around, place, material, view, beside, n, work):
-    """Light of the sky and of other faces that goes to the eye, into ``work[0]``."""
+def _from_around(look, around, place, material, view, beside, n, shares, work):
+    """Light of the sky and of other faces that goes to the eye, into ``work[0]``.
+
+    ``shares``: what base and coat mirror, relative to one lobe at ``n``.
+    """
     out, specular, diffuse = work[0], work[1], work[2]
-    coat = albedo_towards(look.tables, material, view, specular, diffuse)
+    coat = shares[1] * albedo_towards(look.tables, material, view, specular, diffuse)
     base = top = row_of(around.even)
     if len(around.panorama):
         mirror = along((-place.v[0], -place.v[1], -place.v[2]), 2.0 * view.NoV, n)
@@ -277,6 +285,7 @@ def _from_around(look, around, place, material, view, beside, n, work):
             rough = _blurred(material.coat_roughness, beside)
             top = panorama_towards(around.panorama, rough, mirror)
     for c in range(3):
+        specular[c] *= shares[0]
         out[c] = diffuse[c] * place.diffuse[c] + (specular[c] + coat) * place.mirrored[c]
         out[c] += place.open * (specular[c] * base[c] + coat * top[c])
 

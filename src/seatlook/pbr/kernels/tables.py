@@ -11,6 +11,7 @@ from seatlook.pbr.kernels.brdf import (
     D_Charlie,
     V_Neubelt,
     V_SmithGGXCorrelated,
+    alphas,
     layers_at,
     lookup,
     lookup_mean,
@@ -123,6 +124,37 @@ def coupling(tables, materials, out):
                 base = layers_at(tables, materials[p], rows, means, s * s).base
                 total += base * s * s * 2.0 * s
             out[p, i] = 2.0 * total / n
+
+
+@leaf()
+def layers(tables, materials, out):
+    """Layers of each material at its own roughness over sqrt(mu), into ``out`` (p, n, 5).
+
+    Columns: what reaches the diffuse base, what gets below coat and nap, the share that the base's
+    lobe reflects more than once, what gets below the coat, and the share lost by the coat's lobe.
+    """
+    n = out.shape[1]
+    for p in range(len(materials)):
+        alpha = alphas(materials[p].roughness, materials[p].anisotropy)
+        roughness = np.sqrt(min(alpha[0], alpha[1]))
+        means = means_of(tables, materials[p], roughness)
+        rows = rows_of(tables, materials[p], roughness)
+        for j in range(n):
+            here = layers_at(tables, materials[p], rows, means, (j / (n - 1)) ** 2)
+            out[p, j, 0], out[p, j, 1] = here.base, here.nap
+            out[p, j, 2] = 1.0 - here.scale - here.bias
+            out[p, j, 3], out[p, j, 4] = here.coat, here.coat_lost
+
+
+@leaf()
+def fibres(tables, materials, out):
+    """Distribution of each material's nap over 1 - NoH^2, into ``out`` (p, n)."""
+    n = out.shape[1]
+    for p in range(len(materials)):
+        roughness = materials[p].sheen_roughness
+        norm = lookup_mean(tables.sheen_norm, roughness)
+        for j in range(n):
+            out[p, j] = norm * D_Charlie(roughness * roughness, np.sqrt(1.0 - j / (n - 1)))
 
 
 @leaf()
