@@ -32,11 +32,11 @@ class Quality:
 
 # Cheapest first.
 TIERS: dict[str, Quality] = {
-    "T0": Quality(factor=1, rays=0, strata=0, facets=2, bounces=0, error=0.0722),
-    "T1": Quality(factor=1, rays=1, strata=0, facets=2, bounces=0, error=0.0710),
-    "T2": Quality(factor=2, rays=4, strata=0, facets=2, bounces=0, error=0.0710),
-    "T3": Quality(factor=2, rays=4, strata=8, facets=2, bounces=1, error=0.0424),
-    "T4": Quality(factor=4, rays=4, strata=16, facets=2, bounces=3, error=0.0337),
+    "T0": Quality(factor=1, rays=0, strata=0, facets=2, bounces=0, error=0.0669),
+    "T1": Quality(factor=1, rays=1, strata=0, facets=2, bounces=0, error=0.0663),
+    "T2": Quality(factor=2, rays=4, strata=0, facets=2, bounces=0, error=0.0663),
+    "T3": Quality(factor=2, rays=4, strata=8, facets=2, bounces=1, error=0.0379),
+    "T4": Quality(factor=4, rays=4, strata=16, facets=2, bounces=3, error=0.0200),
 }
 QUALITIES: dict[str, Quality] = {
     "draft": TIERS["T1"],
