@@ -25,7 +25,7 @@ def card():
     return Studio(sheet(flat, steps=8))
 
 
-@pytest.mark.parametrize("factor", [2, 4])
+@pytest.mark.parametrize("factor", [2, 3, 4])
 def test_points_of_the_disc_keep_its_variance(factor):
     points = disc_points(factor)
     assert points.mean(axis=0) == pytest.approx(0, abs=1e-12)

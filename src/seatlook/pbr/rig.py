@@ -53,7 +53,7 @@ def disc_points(factor: int) -> FloatArray:
     x, y = np.meshgrid(even, even)
     wide = np.abs(x) > np.abs(y)
     r = np.where(wide, x, y)
-    q = np.pi / 4 * np.where(wide, y, x) / r
+    q = np.pi / 4 * np.where(wide, y, x) / np.where(r == 0, 1.0, r)
     phi = np.where(wide, q, np.pi / 2 - q)
     points = np.stack([r * np.cos(phi), r * np.sin(phi)], axis=-1).reshape(-1, 2)
     if factor == 4:
