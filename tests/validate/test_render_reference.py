@@ -1,5 +1,6 @@
 """Pictures against path tracing with one BRDF; protocol in gallery/render_error.py (``-s``)."""
 
+import functools
 from dataclasses import replace
 
 import numpy as np
@@ -30,34 +31,41 @@ def studio():
     return Studio(scene())
 
 
-def difference(studio, material, rig, *, depth, tier, textured):
-    """FLIP and block error, and the FLIP of the reference's own noise.
+@pytest.fixture(scope="module")
+def references(studio):
+    """Two path-traced pictures of a case, each made once.
 
     512 samples per pixel, 1024 in full light, whose noise alone is half of the bar at 128.
     """
-    appearance = look(material, textured=textured)
-    pictures = [
-        trace(
-            studio,
-            appearance,
-            rig=rig,
-            camera=camera(),
-            depth=depth,
-            spp=64,
-            relief=relief_of(appearance),
-            seed=seed,
-        )
-        for seed in range(8 if depth == 2 else 16)
-    ]
-    half = len(pictures) // 2
-    a, b = np.mean(pictures[:half], axis=0), np.mean(pictures[half:], axis=0)
+
+    @functools.cache
+    def make(material, light, depth, textured):
+        appearance = look(material, textured=textured)
+        rig = (DIRECT if depth == 2 else FULL)[light]
+        kwargs = {"rig": rig, "camera": camera(), "depth": depth, "relief": relief_of(appearance)}
+        passes = [
+            trace(studio, appearance, spp=64, seed=seed, **kwargs)
+            for seed in range(8 if depth == 2 else 16)
+        ]
+        half = len(passes) // 2
+        return np.mean(passes[:half], axis=0), np.mean(passes[half:], axis=0)
+
+    return make
+
+
+def difference(studio, references, material, light, *, depth, tier, textured):
+    """FLIP and block error; prints the FLIP of the reference's own noise."""
+    a, b = references(material, light, depth, textured)
     level = TIERS[tier]
     if depth == 2:
         level = replace(level, strata=0, bounces=0)
-    image = studio.render(appearance, rig=rig, camera=camera(), quality=level)
+    rig = (DIRECT if depth == 2 else FULL)[light]
+    image = studio.render(
+        look(material, textured=textured), rig=rig, camera=camera(), quality=level
+    )
     floor = compare(a, b, rig=rig, cover=image.cover).flip / 2
     got = compare((a + b) / 2, image.radiance, rig=rig, cover=image.cover)
-    print(f"\n  {material} {rig.name} {tier} textured={textured}: {got}, floor {floor:.4f}", end="")
+    print(f"\n  {material} {light} {tier} textured={textured}: {got}, floor {floor:.4f}", end="")
     return got
 
 
@@ -85,8 +93,9 @@ def test_the_path_tracer_has_the_same_brdf(material):
 )
 @pytest.mark.parametrize("material", ["black-leather", "suede"])
 @pytest.mark.parametrize("light", list(DIRECT))
-def test_direct_light(studio, material, light, textured, tier):
-    got = difference(studio, material, DIRECT[light], depth=2, tier=tier, textured=textured)
+def test_direct_light(studio, references, material, light, textured, tier):
+    kwargs = {"depth": 2, "tier": tier, "textured": textured}
+    got = difference(studio, references, material, light, **kwargs)
     assert got.flip <= BARS[2]
 
 
@@ -101,8 +110,9 @@ def test_direct_light(studio, material, light, textured, tier):
         ("black-leather", True, "T4"),
     ],
 )
-def test_full_light(studio, material, textured, tier):
-    (rig,) = FULL.values()
-    got = difference(studio, material, rig, depth=8, tier=tier, textured=textured)
+def test_full_light(studio, references, material, textured, tier):
+    (light,) = FULL
+    kwargs = {"depth": 8, "tier": tier, "textured": textured}
+    got = difference(studio, references, material, light, **kwargs)
     assert got.flip <= BARS[8]
     assert got.block <= 0.015
