@@ -51,7 +51,11 @@ def test_pictures(capsys):
         warm.render(look, rig=rig(10), camera=small)
     studio = Studio(solution)
     rows = [("first", seconds(lambda: studio.render(looks["black-leather"], **one)))]
-    rows += [(f"further, {n}", seconds(lambda n=n: studio.render(looks[n], **one))) for n in looks]
+    # The machine's clock falls by a third for minutes: the least of several says what it takes.
+    for _ in range(5):
+        rows += [
+            (f"further, {n}", seconds(lambda n=n: studio.render(looks[n], **one))) for n in looks
+        ]
     moved = {"rig": rig(310), "camera": CAMERA}
     rows.append(("light moved", seconds(lambda: studio.render(looks["black-leather"], **moved))))
     studio = Studio(solution)
@@ -63,7 +67,8 @@ def test_pictures(capsys):
     share = (studio.faces(CAMERA, 1) >= 0).mean()
     with capsys.disabled():
         print(f"\n{len(studio.surface.mesh.faces)} triangles, {share:.0%} of the picture")
-        for name, (spent, _) in rows:
-            print(f"{name}: {spent:.2f} CPU s")
+        for name in dict(rows):
+            spent = [made[0] for row, made in rows if row == name]
+            print(f"{name}: {min(spent):.2f} to {max(spent):.2f} CPU s")
         print(f"5 materials x 6 rigs: {sum(gallery):.1f} CPU s")
     assert all(np.isfinite(image.radiance).all() for _, (_, image) in rows)
