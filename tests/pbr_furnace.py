@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from seatlook.pbr.kernels.brdf import D_GGX, brdf, lookup_mean, view_of
-from seatlook.pbr.kernels.tables import coupling
-from seatlook.pbr.studio import pack_materials
+from seatlook.pbr.kernels.brdf import D_GGX, brdf, view_of
+from seatlook.pbr.kernels.lookup import lookup_mean
+from seatlook.pbr.kernels.tables import coupling, fibres
+from seatlook.pbr.studio import NAP_NODES, pack_materials
 from seatlook.pbr.tables import load_tables
 
 
@@ -18,20 +19,21 @@ def reflected(appearance, v, n=256):
     narrowest GGX lobe; the balance heuristic weighs them (Veach 1995).
     """
     tables, material = load_tables(), pack_materials([appearance])
-    row = np.empty((1, len(tables.scale_mean)))
+    row, nap = np.empty((1, len(tables.scale_mean))), np.empty((1, NAP_NODES))
     coupling(tables, material, row)
+    fibres(tables, material, nap)
     seen = view_of(tables, material[0], appearance.roughness, tuple(appearance.albedo), *v)
     alpha = min(seen.alpha_x, seen.alpha_y)
     if appearance.coat > 0:
         alpha = min(alpha, appearance.coat_roughness**2)
     total = np.zeros(3)
     mean = lookup_mean(row[0], seen.table_roughness)
-    _quadrature(tables, material, mean, seen, alpha, n, total)
+    _quadrature(tables, material, nap[0], mean, seen, alpha, n, total)
     return total
 
 
 @njit(cache=True)
-def _quadrature(tables, materials, mean, seen, alpha, n, total):
+def _quadrature(tables, materials, nap, mean, seen, alpha, n, total):
     f = np.zeros(3)
     vx, vy, vz = seen.ToV, seen.BoV, seen.NoV
     for i in range(n):
@@ -54,6 +56,6 @@ def _quadrature(tables, materials, mean, seen, alpha, n, total):
                 hx, hy, hz = hx * s, hy * s, hz * s
                 VoH = max(hx * vx + hy * vy + hz * vz, 1e-12)
                 density = z / np.pi + D_GGX(alpha, alpha, hx, hy, hz) * hz / (4 * VoH)
-                brdf(tables, materials[0], mean, seen, 0.0, x, y, z, f)
+                brdf(tables, materials[0], nap, mean, seen, 0.0, x, y, z, f)
                 for k in range(3):
                     total[k] += f[k] * z / density / (n * n)

@@ -7,25 +7,31 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from seatlook.errors import InputError
 from seatlook.io.material import read_material
-from seatlook.model import Appearance
+from seatlook.model import Appearance, Rig
 from seatlook.pbr import brdf
 from seatlook.pbr.kernels import brdf as kernel
+from seatlook.pbr.kernels.facet_light import brdf_facets, look_at_discs
 from seatlook.pbr.kernels.facets import (
+    DISC_X,
+    DISC_Y,
+    MOST,
     NOV,
-    ROWS,
+    ROOM,
     SHARE,
     X,
     Y,
     Z,
     _half,
     _upwards,
-    brdf_facets,
     layers_to_eye,
 )
-from seatlook.pbr.kernels.light import above_horizon
+from seatlook.pbr.kernels.light import above_horizon, disc_of
 from seatlook.pbr.kernels.tables import coupling, coupling_at, fibres, layers
-from seatlook.pbr.studio import pack_materials
+from seatlook.pbr.quality import Quality
+from seatlook.pbr.rig import pack_lights
+from seatlook.pbr.studio import NAP_NODES, NODES, pack_materials
 from seatlook.pbr.tables import load_tables
 
 COUNT = 16
@@ -41,8 +47,8 @@ def tilted(rng, deviation):
     return unit(np.column_stack([-slopes, np.ones(COUNT)]))
 
 
-def reflected(appearance: Appearance, normals, v, l, parts):
-    """Mean over facets of BRDF times cosine as the renderer has it, each at one of some parts."""
+def reflected(appearance: Appearance, normals, v, l):
+    """Mean over facets of BRDF times cosine as the renderer has it, under a point far away."""
     tables, materials = load_tables(), pack_materials([appearance])
     means = np.empty((1, len(tables.scale_mean)))
     coupling(tables, materials, means)
@@ -50,19 +56,23 @@ def reflected(appearance: Appearance, normals, v, l, parts):
     view = kernel.view_of(
         tables, materials[0], appearance.roughness, tuple(appearance.albedo), 0.0, 0.0, n @ v
     )
-    facets = np.empty((ROWS, COUNT))
-    facets[[X, Y, Z]], facets[NOV], facets[SHARE] = normals.T, normals @ v, 1.0
-    at, nap = np.empty((1, 129, 5)), np.empty((1, 129))
+    facets = np.full(ROOM, np.nan)
+    for row, values in ((X, normals[:, 0]), (Y, normals[:, 1]), (Z, normals[:, 2])):
+        facets[row : row + COUNT] = values
+    facets[NOV : NOV + COUNT], facets[SHARE : SHARE + COUNT] = normals @ v, 1.0
+    at, nap = np.empty((1, NODES, 5)), np.empty((1, NAP_NODES))
     layers(tables, materials, at)
     fibres(tables, materials, nap)
     layers_to_eye(at[0], facets, COUNT)
+    lights = pack_lights(Rig(name="r", lights=(), ambient=1.0))
+    look_at_discs(lights, 0, facets, COUNT)
+    disc, out = disc_of(lights, 0.0, tuple(l)), np.empty(3)
     mean = coupling_at(means[0], view.table_roughness)
-    total, out = np.zeros(3), np.empty(3)
-    for turn in range(parts):
-        part = (tuple(l), 0.0, float(l[2]), 0.0, turn, parts)
-        brdf_facets(materials[0], at[0], nap[0], mean, view, facets, COUNT, part, tuple(v), out)
-        total += out / parts
-    return total
+    up = (0.0, 0.0, 1.0)
+    brdf_facets(
+        materials[0], at[0], nap[0], mean, view, facets, COUNT, disc, 0.0, up, tuple(v), out
+    )
+    return out
 
 
 def expected(appearance: Appearance, normals, v, l):
@@ -89,9 +99,37 @@ def test_facets_reflect_the_mean_of_their_brdf(name, deviation):
         normals = tilted(rng, deviation)
         normals = normals[np.where(normals @ v > 0.05, np.arange(COUNT), 0)]
         want = expected(appearance, normals, v, l)
-        for parts in (1, 4):
-            got = reflected(appearance, normals, v, l, parts)
-            assert got == pytest.approx(want, rel=2e-3 if deviation == 0 else 1e-2)
+        got = reflected(appearance, normals, v, l)
+        assert got == pytest.approx(want, rel=2e-3 if deviation == 0 else 1e-2)
+
+
+def points_looked_at(factor, q, count):
+    """Points (count, 2) of a light's disc at which the facets of sample q look."""
+    lights, facets = (
+        pack_lights(Rig(name="r", lights=(), ambient=1.0), factor),
+        np.empty(ROOM),
+    )
+    look_at_discs(lights, q, facets, count)
+    return np.column_stack([facets[DISC_X : DISC_X + count], facets[DISC_Y : DISC_Y + count]])
+
+
+@pytest.mark.parametrize(
+    ("factor", "samples", "count"),
+    [(2, (-3,), 4), (2, (-3,), 16), (2, (-1, -2), 4), (2, range(4), 1), (4, range(16), 4)],
+)
+def test_the_facets_of_a_pixel_look_at_all_points_of_a_disc_as_often(factor, samples, count):
+    seen = np.concatenate([points_looked_at(factor, q, count) for q in samples])
+    points = pack_lights(Rig(name="r", lights=(), ambient=1.0), factor).disc
+    often = [np.isclose(seen, p).all(axis=1).sum() for p in points]
+    assert sum(often) == len(seen)
+    assert len(set(often)) == 1
+
+
+def test_rows_have_room_for_the_most_facets():
+    assert MOST * MOST <= NOV - Z
+    with pytest.raises(InputError, match="1 to 8"):
+        Quality(factor=1, rays=0, strata=0, facets=MOST + 1, bounces=0, error=1.0)
+    Quality(factor=1, rays=0, strata=0, facets=MOST, bounces=0, error=1.0)
 
 
 def test_relief_is_dark_where_the_light_has_set_behind_the_surface():

@@ -17,8 +17,9 @@ from seatlook.model import Rig, bulb
 from seatlook.pbr.studio import Studio
 
 PICTURES, WARM = 500, 60
-# What the process may hold more at the end than once everything kept is full [MB].
-GROWTH = 2.0
+# What the process may hold more at the end than once everything kept is full [MB], by the trend
+# of all pictures, and in all: the allocator takes two or three more in one step, now and then.
+GROWTH, STEP = 2.0, 8.0
 CODE = """
 import json
 from pathlib import Path
@@ -73,7 +74,11 @@ def test_memory_stays_flat_over_500_pictures():
     rss = json.loads(run.stdout)
     assert len(rss) == PICTURES
     print(f"{rss[0]:.1f} MB after 1, {rss[WARM]:.1f} after {WARM}, {rss[-1]:.1f} after {PICTURES}")
-    assert max(rss[WARM:]) - rss[WARM] < GROWTH
+    later = np.array(rss[WARM:])
+    first, second = np.triu_indices(len(later), 1)
+    slope = np.median((later[second] - later[first]) / (second - first))
+    assert slope * len(later) < GROWTH
+    assert later.max() - later[0] < STEP
 
 
 @pytest.mark.render

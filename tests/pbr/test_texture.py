@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatlook.model import Appearance, TextureMaps
-from seatlook.pbr.kernels.grain import grain
+from seatlook.pbr.kernels.grain import bilinear, fetch_bilinear, grain
 from seatlook.pbr.kernels.measured import measured
 from seatlook.pbr.measured import load_maps
 from seatlook.pbr.studio import pack_materials
@@ -138,3 +138,12 @@ def test_baking_leaves_measured_maps_alone():
 def test_no_depth_is_no_texture():
     assert texture_index(Appearance(albedo=np.ones(3), texture="leather")) == -1
     assert texture_index(Appearance(albedo=np.ones(3), texture_depth=1e-4)) == -1
+
+
+def test_reading_ahead_changes_nothing_wherever_it_looks(textures):
+    texels = textures.texels[MAPS["suede"]]
+    before = bilinear(texels, textures, 0, 0.3, 0.7)
+    for u, v in ((0.0, 0.0), (-3.2, 1e6), (0.999999, 0.999999)):
+        for level in (0, len(textures.start) - 1):
+            fetch_bilinear(texels, textures, level, u, v)
+    assert bilinear(texels, textures, 0, 0.3, 0.7) == before

@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from seatlook.model import Appearance, FloatArray
-from seatlook.pbr.kernels.brdf import COAT_F0, MIN_ALPHA, ROUGHNESS_LOW
+from seatlook.pbr.kernels.brdf import COAT_F0, MIN_ALPHA
+from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW
 from seatlook.pbr.tables import load_tables
 
 

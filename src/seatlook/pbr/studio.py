@@ -18,7 +18,7 @@ from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.exposure import ev100
 from seatlook.pbr.foam import FOAM
 from seatlook.pbr.kept import Kept
-from seatlook.pbr.kernels import bvh, rays, shade, surface, tables
+from seatlook.pbr.kernels import alike, bvh, rays, shade, stitch, surface, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.measured import load_maps, map_sets, mean_albedo
 from seatlook.pbr.picture import Image
@@ -36,7 +36,7 @@ _CARD = 0.18
 # Foam in front of the cover by less than this [m] is a coarse foam face that cuts through it.
 _COMPRESSED = 0.02
 # Nodes at which what a material lets through, and its nap, are tabulated.
-_NODES = 129
+NODES, NAP_NODES = 129, 513
 # How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
 _OCCLUDER = 0.04
 
@@ -94,6 +94,7 @@ class Studio:
             self.surface.mesh,
             eye_of(camera, level.factor),
             ids,
+            self._alike(rig, camera, level, ids, seen),
             look,
             pack_lights(rig, level.factor),
             self._surroundings.light(rig, look, level, camera, ids),
@@ -176,6 +177,27 @@ class Studio:
             stack[k] = self._kept(key, make)
         return stack
 
+    def _alike(
+        self,
+        rig: Rig,
+        camera: Camera,
+        level: Quality,
+        ids: npt.NDArray[np.int32],
+        seen: npt.NDArray[np.uint8],
+    ) -> npt.NDArray[np.bool_]:
+        """Pixels whose 2 x 2 samples are as good as one, (h, w)."""
+
+        def make() -> npt.NDArray[np.bool_]:
+            same = np.zeros(camera.size[::-1], dtype=np.bool_)
+            if level.factor == 2:
+                eye, far = eye_of(camera, 2), stitch.reach(self.thread)
+                alike.alike(self.surface.mesh, eye, ids, seen, far, same)
+            return same
+
+        lights = tuple(_light_key(one) for one in rig.lights)
+        key = ("alike", camera_key(camera), level.factor, level.rays, lights)
+        return np.asarray(self._kept(key, make))
+
     def _shadow(
         self, rig: Rig, k: int, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
     ) -> npt.NDArray[np.uint8]:
@@ -215,7 +237,7 @@ class Studio:
         materials = pack_materials(looks)
         couplings = np.empty((len(materials), len(load_tables().scale_mean)))
         tables.coupling(load_tables(), materials, couplings)
-        layers, fibres = np.empty((len(materials), _NODES, 5)), np.empty((len(materials), _NODES))
+        layers, fibres = np.empty((len(materials), NODES, 5)), np.empty((len(materials), NAP_NODES))
         tables.layers(load_tables(), materials, layers)
         tables.fibres(load_tables(), materials, fibres)
         used = {int(k) for k in materials["texture"] if k >= 0}

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.model import FloatArray
-from seatlook.pbr.kernels.brdf import ROUGHNESS_LOW, Tables
+from seatlook.pbr.kernels.brdf import Tables
+from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW
 
 _FILE = Path(__file__).with_name("tables.npz")
 ROUGHNESSES = 80

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW, bilinear, cell, lookup, lookup_mean
 
-ROUGHNESS_LOW = 0.08
 MIN_ALPHA = ROUGHNESS_LOW**2
 COAT_F0 = 0.04
 
@@ -65,6 +65,19 @@ def V_SmithGGXCorrelated(alpha_x, alpha_y, ToV, BoV, NoV, ToL, BoL, NoL):
     return 0.5 / (view + light)
 
 
+@leaf()
+def GGX_stretched(ax, ay, view, ToL, BoL, NoL, ToH, BoH, NoH):
+    """Product of both terms above, seen along ``view``, with one division."""
+    x, y, z = ay * ToH, ax * BoH, ax * ay * NoH
+    d = x * x + y * y + z * z
+    x, y = ax * view.ToV, ay * view.BoV
+    seen = NoL * np.sqrt(x * x + y * y + view.NoV * view.NoV)
+    x, y = ax * ToL, ay * BoL
+    lit = view.NoV * np.sqrt(x * x + y * y + NoL * NoL)
+    both = ax * ay
+    return both * both * both / (2.0 * np.pi * d * d * (seen + lit))
+
+
 class Lobe(NamedTuple):
     """GGX lobe whose half-vectors are spread: squared width, and strength of what that bends.
 
@@ -89,7 +102,7 @@ def lobe_of(alpha, more):
 
 @leaf()
 def GGX(lobe, NoV, NoL, NoH):
-    """Product of both terms above for a lobe as wide along as across."""
+    """The same for a lobe as wide along as across, by the cosines alone."""
     b2, sine2 = lobe.squared, 1.0 - NoH * NoH
     inverse = 1.0 / (b2 + (1.0 - b2) * sine2)
     # Share of the half-vectors that lie closer to the normal.
@@ -116,6 +129,14 @@ def D_Charlie(alpha, NoH):
 
 
 @leaf()
+def D_nap(fibres, sine):
+    """Distribution of the nap at the sine of a half-vector, see ``tables.fibres``."""
+    x = sine * (len(fibres) - 1)
+    j = min(int(x), len(fibres) - 2)
+    return fibres[j] + (x - j) * (fibres[j + 1] - fibres[j])
+
+
+@leaf()
 def V_Neubelt(NoV, NoL):
     """Neubelt and Pettineo 2013: no masking, smooth denominator."""
     return 1.0 / (4.0 * (NoL + NoV - NoL * NoV))
@@ -132,37 +153,6 @@ def F_multiple(f0, f90, mean):
     """Hill 2018 after Kulla and Conty 2017: colour of light reflected two times or more."""
     average = f0 + (f90 - f0) / 21.0
     return average * average * mean / (1.0 - average * (1.0 - mean))
-
-
-@leaf()
-def cell(value, low, high, n):
-    """Index and weight for linear interpolation on ``n`` even nodes."""
-    x = (value - low) / (high - low) * (n - 1)
-    x = min(max(x, 0.0), n - 1.0)
-    i = min(int(x), n - 2)
-    return i, x - i
-
-
-@leaf()
-def _bilinear(table, i, a, j, b):
-    below = table[i, j] + b * (table[i, j + 1] - table[i, j])
-    above = table[i + 1, j] + b * (table[i + 1, j + 1] - table[i + 1, j])
-    return below + a * (above - below)
-
-
-@leaf()
-def lookup(table, roughness, mu):
-    """Bilinear value of a table at roughness and cosine."""
-    i, a = cell(roughness, ROUGHNESS_LOW, 1.0, table.shape[0])
-    j, b = cell(np.sqrt(mu), 0.0, 1.0, table.shape[1])
-    return _bilinear(table, i, a, j, b)
-
-
-@leaf()
-def lookup_mean(table, roughness):
-    """Linear value of a table over roughness alone."""
-    i, a = cell(roughness, ROUGHNESS_LOW, 1.0, table.shape[0])
-    return table[i] + a * (table[i + 1] - table[i])
 
 
 @leaf()
@@ -243,18 +233,18 @@ def layers_at(tables, material, rows, means, mu):
     """Layers at cosine ``mu``."""
     j, b = cell(np.sqrt(mu), 0.0, 1.0, tables.scale.shape[1])
     i, a = rows.base
-    scale, bias = _bilinear(tables.scale, i, a, j, b), _bilinear(tables.bias, i, a, j, b)
+    scale, bias = bilinear(tables.scale, i, a, j, b), bilinear(tables.bias, i, a, j, b)
     coat, nap, lost = 1.0, 1.0, 0.0
     share = coat_share(material)
     if share > 0.0:
         i, a = rows.coat
-        low, high = _bilinear(tables.scale, i, a, j, b), _bilinear(tables.bias, i, a, j, b)
+        low, high = bilinear(tables.scale, i, a, j, b), bilinear(tables.bias, i, a, j, b)
         lost = 1.0 - low - high
         coat -= share * (COAT_F0 * low + high + means.coat_again * lost)
     share = sheen_share(material)
     if share > 0.0:
         i, a = rows.nap
-        nap -= share * _bilinear(tables.sheen, i, a, j, b)
+        nap -= share * bilinear(tables.sheen, i, a, j, b)
     nap *= coat
     f0 = material.f0
     reflected = f0 * scale + F90(f0) * bias + means.again * (1.0 - scale - bias)
@@ -323,31 +313,31 @@ def widened(alpha, more):
 
 
 @leaf()
-def brdf(tables, material, coupling, view, wider, ToL, BoL, NoL, out):
+def brdf(tables, material, fibres, coupling, view, wider, ToL, BoL, NoL, out):
     """BRDF [1/sr] into ``out`` (3,); both cosines above 0.
 
-    ``coupling``: mean of what reaches the diffuse base at this roughness; ``wider``: added to the
-    squared width of the lobes, for a light that is not a point.
+    ``fibres``: the material's, see ``tables``; ``coupling``: mean of what reaches the diffuse base
+    at this roughness; ``wider``: added to the squared width of the lobes, for a light that is not
+    a point.
     """
     x, y, z = view.ToV + ToL, view.BoV + BoL, view.NoV + NoL
     inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
     ToH, BoH, NoH = x * inverse, y * inverse, z * inverse
     LoH = min(1.0, ToL * ToH + BoL * BoH + NoL * NoH)
     ax, ay = widened(view.alpha_x, wider), widened(view.alpha_y, wider)
-    lobe = D_GGX(ax, ay, ToH, BoH, NoH)
-    lobe *= V_SmithGGXCorrelated(ax, ay, view.ToV, view.BoV, view.NoV, ToL, BoL, NoL)
-    _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out)
+    lobe = GGX_stretched(ax, ay, view, ToL, BoL, NoL, ToH, BoH, NoH)
+    _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, LoH, out)
 
 
 @leaf()
-def brdf_isotropic(tables, material, coupling, view, wider, NoL, NoH, LoH, out):
+def brdf_isotropic(tables, material, fibres, coupling, view, wider, NoL, NoH, LoH, out):
     """Same where the lobe is as wide along as across, by the cosines alone."""
     lobe = GGX(lobe_of(view.alpha_x, wider), view.NoV, NoL, NoH)
-    _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out)
+    _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, LoH, out)
 
 
 @leaf()
-def _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out):
+def _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, LoH, out):
     here, there = view.layers, layers_at(tables, material, view.rows, view.means, NoL)
     lost = (1.0 - here.scale - here.bias) * (1.0 - there.scale - there.bias)
     lost /= np.pi * (1.0 - view.means.base)
@@ -359,7 +349,7 @@ def _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out):
         fresnel = view.f0[c] + (view.f90[c] - view.f0[c]) * m
         out[c] = nap * (fresnel * lobe + view.again[c] * lost) + view.colour[c] * diffuse
     if sheen_share(material) > 0.0:
-        _add_sheen(tables, material, min(here.coat, there.coat), view.NoV, NoL, NoH, out)
+        _add_sheen(material, fibres, min(here.coat, there.coat), view.NoV, NoL, NoH, out)
     share = coat_share(material)
     if share > 0.0:
         lobe = GGX(lobe_of(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
@@ -370,11 +360,11 @@ def _layered(tables, material, coupling, view, wider, lobe, NoL, NoH, LoH, out):
 
 
 @leaf()
-def _add_sheen(tables, material, share, NoV, NoL, NoH, out):
-    lobe = D_Charlie(material.sheen_roughness**2, NoH) * V_Neubelt(NoV, NoL)
-    lobe *= lookup_mean(tables.sheen_norm, material.sheen_roughness)
+def _add_sheen(material, fibres, share, NoV, NoL, NoH, out):
+    lobe = D_nap(fibres, np.sqrt(max(0.0, 1.0 - NoH * NoH))) * V_Neubelt(NoV, NoL)
+    lobe *= share * (1.0 - material.metalness)
     for c in range(3):
-        out[c] += share * (1.0 - material.metalness) * material.sheen[c] * lobe
+        out[c] += material.sheen[c] * lobe
 
 
 @leaf()

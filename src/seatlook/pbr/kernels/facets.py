@@ -1,4 +1,4 @@
-"""The facets of a relief that one sample covers, and the mean of the light they reflect.
+"""The facets of a relief that one sample covers: where they look, and what they mirror.
 
 A grain's slopes reach further than a polished lobe is wide, and are no Gaussian. One lobe at their
 mean, widened by their variance (Olano and Baker 2010), has tails that are too bright: those of GGX
@@ -10,22 +10,31 @@ from __future__ import annotations
 import numpy as np
 
 from seatlook.pbr.kernels import leaf
-from seatlook.pbr.kernels.brdf import (
-    COAT_F0,
-    GGX,
-    V_Neubelt,
-    coat_share,
-    lobe_of,
-    sheen_share,
-)
-from seatlook.pbr.kernels.grain import WEAVE, bilinear, nearest_level, stroke
-from seatlook.pbr.kernels.light import above_horizon
+from seatlook.pbr.kernels.grain import WEAVE, bilinear, fetch_bilinear, nearest_level, stroke
 from seatlook.pbr.kernels.surface import along, dot, minus, row, row_of, unit
 
-# Rows of the room for facets: unit normal, its cosine to the eye, share of the colour, and layers
-# there.
-X, Y, Z, NOV, SHARE, BASE, NAP, LOST, COAT, COAT_LOST = range(10)
-ROWS = 10
+# Facets of one sample along each side at most.
+MOST = 8
+# Where the rows of the room for facets begin, each with as many facets as there may be, and a few
+# more, or all would want the same lines of the cache. Loops along them hold no branch, no sum and
+# no look-up, so that the compiler takes four facets at a time.
+_PITCH = MOST * MOST + 4
+# Place under the sample, slopes, unit normal, its cosine to the eye, share of the colour; layers
+# at that cosine; what of base and coat goes up; point of a light's disc at which a facet looks.
+PLACE_X, PLACE_Y, SLOPE_U, SLOPE_V, X, Y, Z, NOV, SHARE = range(0, 9 * _PITCH, _PITCH)
+BASE, NAP, LOST, COAT, COAT_LOST = range(9 * _PITCH, 14 * _PITCH, _PITCH)
+UP_BASE, UP_COAT, DISC_X, DISC_Y = range(14 * _PITCH, 18 * _PITCH, _PITCH)
+# Under one light: share of its part, cosines to it and of the half-vector, Fresnel's power, layers
+# there, the nap's fibres.
+PART, NOL, NOH, GRAZING, BASE_L, NAP_L, LOST_L, COAT_L, COAT_LOST_L, FIBRES = range(
+    18 * _PITCH, 28 * _PITCH, _PITCH
+)
+# Reflected by the diffuse base, its lobe, the same times Fresnel's power, bounces in it, nap, coat,
+# bounces in that.
+DIFFUSE, LOBE, LOBE_GRAZING, AGAIN, NAP_LOBE, COAT_LOBE, COAT_AGAIN = range(
+    28 * _PITCH, 35 * _PITCH, _PITCH
+)
+ROOM = 35 * _PITCH
 # Texels are as wide as this share of a facet: what many facets leave out averages away, what a
 # wider lobe adds does not.
 _SHARP = 0.25
@@ -62,6 +71,15 @@ def _bend(mesh, f, n, d):
 
 
 @leaf()
+def mean_of(facets, start, count):
+    """Mean of a row."""
+    total = 0.0
+    for q in range(count):
+        total += facets[start + q]
+    return total / count
+
+
+@leaf()
 def spread(mesh, textures, eye, material, f, place, n, at, t, covers, side, facets):
     """Facets of the relief under a sample, or under all that it stands for, into ``facets``.
 
@@ -71,17 +89,26 @@ def spread(mesh, textures, eye, material, f, place, n, at, t, covers, side, face
     Returns the mean normal; what the slopes within a facet, and those of all facets, add to the
     squared width of a lobe; and the share of the colour, to which that of each facet is relative.
     """
+    count = side * side
     across, down = _step(place, row_of(eye.right), t), _step(place, row_of(eye.down), t)
-    half = 0.5 * (covers - 1)
-    at = (at[0] + half * (across[0] + down[0]), at[1] + half * (across[1] + down[1]))
     across, down = (covers * across[0], covers * across[1]), (covers * down[0], covers * down[1])
     steep = material.texture_depth / material.texture_scale
+    variance, share = _slopes(textures, material, at, across, down, side, facets)
+    _normals(facets, count, n, _bend(mesh, f, n, across), _bend(mesh, f, n, down), steep, place)
+    mean = (mean_of(facets, X, count), mean_of(facets, Y, count), mean_of(facets, Z, count))
+    within = 2.0 * steep * steep * variance
+    beside = within + max(0.0, 1.0 - dot(mean, mean))
+    return unit(mean), within, beside, share * stroke(material, at[0], at[1])
+
+
+@leaf()
+def _slopes(textures, material, at, across, down, side, facets):
+    """Slopes and colours of the facets; returns the means of variance within them, and colour."""
     texels = textures.texels[material.texture]
     width = np.sqrt(abs(across[0] * down[1] - across[1] * down[0])) / side
     tile = textures.cells * material.texture_scale
     level = nearest_level(textures, tile, _SHARP * width)
-    bend, bow = _bend(mesh, f, n, across), _bend(mesh, f, n, down)
-    mean, variance, share, weight = (0.0, 0.0, 0.0), 0.0, 0.0, 1.0 / (side * side)
+    variance, share, weight, scale = 0.0, 0.0, 1.0 / (side * side), 1.0 / tile
     line, column = 0, 0
     for q in range(side * side):
         x, y = (column + 0.5) / side - 0.5, (line + 0.5) / side - 0.5
@@ -89,23 +116,33 @@ def spread(mesh, textures, eye, material, f, place, n, at, t, covers, side, face
         if column == side:
             line, column = line + 1, 0
         u, v = at[0] + x * across[0] + y * down[0], at[1] + x * across[1] + y * down[1]
-        su, sv, s2, c = bilinear(texels, textures, level, u / tile, v / tile)
-        m = along(along(n, x, bend), y, bow)
-        m = unit(along(along(m, -steep * su, place.warp), -steep * sv, place.weft))
-        facets[X, q], facets[Y, q], facets[Z, q] = m
-        facets[NOV, q], facets[SHARE, q] = max(0.01, dot(m, place.v)), c
-        mean = along(mean, weight, m)
+        su, sv, s2, colour = bilinear(texels, textures, level, u * scale, v * scale)
+        # The next sample is most often the one beside.
+        u, v = u + across[0], v + across[1]
+        fetch_bilinear(texels, textures, level, u * scale, v * scale)
+        facets[PLACE_X + q], facets[PLACE_Y + q] = x, y
+        facets[SLOPE_U + q], facets[SLOPE_V + q], facets[SHARE + q] = su, sv, colour
         variance += weight * s2
-        share += weight * c
+        share += weight * colour
     for q in range(side * side):
-        facets[SHARE, q] /= share
-    within = 2.0 * steep * steep * variance
-    beside = within + max(0.0, 1.0 - dot(mean, mean))
-    return unit(mean), within, beside, share * stroke(material, at[0], at[1])
+        facets[SHARE + q] /= share
+    return variance, share
 
 
 @leaf()
-def _layers(layers, mu):
+def _normals(facets, count, n, bend, bow, steep, place):
+    """Normals of the facets on a surface that bends across and down the sample."""
+    for q in range(count):
+        x, y = facets[PLACE_X + q], facets[PLACE_Y + q]
+        u, v = -steep * facets[SLOPE_U + q], -steep * facets[SLOPE_V + q]
+        m = along(along(along(along(n, x, bend), y, bow), u, place.warp), v, place.weft)
+        m = unit(m)
+        facets[X + q], facets[Y + q], facets[Z + q] = m
+        facets[NOV + q] = max(0.01, dot(m, place.v))
+
+
+@leaf()
+def layers_of(layers, mu):
     """Layers of a material at one cosine, see ``tables.layers``."""
     x = np.sqrt(mu) * (len(layers) - 1)
     j = min(int(x), len(layers) - 2)
@@ -121,20 +158,12 @@ def _layers(layers, mu):
 
 
 @leaf()
-def _fibres(fibres, sine2):
-    """Distribution of the nap at one squared sine, see ``tables.fibres``."""
-    x = sine2 * (len(fibres) - 1)
-    j = min(int(x), len(fibres) - 2)
-    return fibres[j] + (x - j) * (fibres[j + 1] - fibres[j])
-
-
-@leaf()
 def layers_to_eye(layers, facets, count):
     """Layers at the facets' cosines to the eye, into ``facets``."""
     for q in range(count):
-        here = _layers(layers, facets[NOV, q])
-        facets[BASE, q], facets[NAP, q], facets[LOST, q] = here[0], here[1], here[2]
-        facets[COAT, q], facets[COAT_LOST, q] = here[3], here[4]
+        here = layers_of(layers, facets[NOV + q])
+        facets[BASE + q], facets[NAP + q], facets[LOST + q] = here[0], here[1], here[2]
+        facets[COAT + q], facets[COAT_LOST + q] = here[3], here[4]
 
 
 @leaf()
@@ -161,68 +190,16 @@ def mirrored_facets(material, view, facets, count, n, within, v):
     ``n``: normal without the relief, below which what they mirror is lost; ``within``: as
     ``spread`` returns it.
     """
-    base = coat = 0.0
     base_width, coat_width = view.alpha_x**2 + within, material.coat_roughness**4 + within
-    whole, top = view.layers.nap - view.layers.base, 1.0 - view.layers.coat
     NoV = dot(n, v)
     for q in range(count):
-        MoV = facets[NOV, q]
-        MoN = facets[X, q] * n[0] + facets[Y, q] * n[1] + facets[Z, q] * n[2]
+        MoV = facets[NOV + q]
+        MoN = facets[X + q] * n[0] + facets[Y + q] * n[1] + facets[Z + q] * n[2]
         up, own = _half(min(1.0, max(-1.0, 2.0 * MoV * MoN - NoV))), _half(MoV)
-        base += _upwards(up, own, base_width) * (facets[NAP, q] - facets[BASE, q])
-        if top > 0.0:
-            coat += _upwards(up, own, coat_width) * (1.0 - facets[COAT, q])
+        facets[UP_BASE + q] = _upwards(up, own, base_width) * (facets[NAP + q] - facets[BASE + q])
+        facets[UP_COAT + q] = _upwards(up, own, coat_width) * (1.0 - facets[COAT + q])
+    base, coat = view.layers.nap - view.layers.base, 1.0 - view.layers.coat
     return (
-        base / (count * whole) if whole > 1e-6 else 1.0,
-        coat / (count * top) if top > 1e-6 else 1.0,
+        mean_of(facets, UP_BASE, count) / base if base > 1e-6 else 1.0,
+        mean_of(facets, UP_COAT, count) / coat if coat > 1e-6 else 1.0,
     )
-
-
-@leaf()
-def brdf_facets(material, layers, fibres, coupling, view, facets, count, part, v, out):
-    """Mean over ``count`` facets of BRDF times cosine, into ``out`` (3,).
-
-    ``layers, fibres``: the material's, see ``tables``; ``part``: direction of the light, what it
-    adds to the squared width of the lobes, cosine from the surface without its relief,
-    angular radius, and which part of 1, 2 or 4 it is: each facet looks at one of them. The other
-    arguments as for ``brdf``.
-    """
-    l, wider, smooth, angle, turn, parts = part
-    h = unit(along(v, 1.0, l))
-    LoH = min(1.0, dot(l, h))
-    coat, nap = coat_share(material), sheen_share(material)
-    base_lobe, top_lobe = lobe_of(view.alpha_x, wider), lobe_of(material.coat_roughness**2, wider)
-    diffuse = lobe = again = nap_lobe = coat_lobe = coat_again = 0.0
-    for q in range(count):
-        if (q + 2 * (q >> 2) + (q >> 3)) & (parts - 1) != turn:
-            continue
-        m = (facets[X, q], facets[Y, q], facets[Z, q])
-        c = above_horizon(dot(m, l), smooth, angle)
-        if c <= 1e-5:
-            continue
-        NoV, NoH = facets[NOV, q], min(1.0, dot(m, h))
-        base, below, lost, under, coat_lost = _layers(layers, min(1.0, c))
-        below = c * min(facets[NAP, q], below)
-        diffuse += c * facets[SHARE, q] * facets[BASE, q] * base
-        again += below * facets[LOST, q] * lost
-        lobe += below * GGX(base_lobe, NoV, c, NoH)
-        if nap > 0.0:
-            under = c * min(facets[COAT, q], under)
-            nap_lobe += under * _fibres(fibres, 1.0 - NoH * NoH) * V_Neubelt(NoV, c)
-        if coat > 0.0:
-            coat_lobe += c * GGX(top_lobe, NoV, c, NoH)
-            coat_again += c * facets[COAT_LOST, q] * coat_lost
-    weight = parts / count
-    diffuse *= weight * (1.0 - material.metalness) / (np.pi * coupling)
-    again *= weight / (np.pi * (1.0 - view.means.base))
-    nap_lobe *= weight * (1.0 - material.metalness)
-    fresnel = 1.0 - LoH
-    fresnel *= fresnel * fresnel * fresnel * fresnel
-    top = 0.0
-    if coat > 0.0:
-        top = (COAT_F0 + (1.0 - COAT_F0) * fresnel) * coat_lobe
-        top += view.means.coat_again * coat_again / (np.pi * (1.0 - view.means.coat))
-    for k in range(3):
-        out[k] = weight * (view.f0[k] + (view.f90[k] - view.f0[k]) * fresnel) * lobe
-        out[k] += view.again[k] * again + view.colour[k] * diffuse
-        out[k] += nap_lobe * material.sheen[k] + weight * coat * top

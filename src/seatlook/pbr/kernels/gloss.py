@@ -137,6 +137,7 @@ def sent(mesh, look, lights, lit, sky, f, d, density, work):
     for c in range(3):
         out[c] = (f_out[c] + coat + diffuse[c]) * around[c]
     mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
+    fibres = look.fibres[mesh.panel[f]]
     for k in range(len(lights.near)):
         seen = 0.0
         for corner in range(3):
@@ -149,7 +150,8 @@ def sent(mesh, look, lights, lit, sky, f, d, density, work):
         if NoL <= 1e-5:
             continue
         wider = 0.125 * angle * angle + _BLUR / density
-        brdf(look.tables, material, mean, view, wider, dot(warp, l), dot(weft, l), NoL, f_out)
+        x, y = dot(warp, l), dot(weft, l)
+        brdf(look.tables, material, fibres, mean, view, wider, x, y, NoL, f_out)
         for c in range(3):
             out[c] += seen * f_out[c] * NoL * e[c]
 

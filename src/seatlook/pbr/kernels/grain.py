@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.ahead import fetch
 from seatlook.pbr.kernels.noise import smooth
 
 
@@ -46,7 +47,9 @@ def bilinear(t, textures, level, u, v):
     base = textures.start[level]
     top, low = base + (j & (n - 1)) * n, base + ((j + 1) & (n - 1)) * n
     left, right = i & (n - 1), (i + 1) & (n - 1)
-    w0, w1, w2, w3 = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
+    # As narrow as the texels, or each of them would be widened.
+    w0, w1 = np.float32((1.0 - a) * (1.0 - b)), np.float32(a * (1.0 - b))
+    w2, w3 = np.float32((1.0 - a) * b), np.float32(a * b)
     p, q, r, s = top + left, top + right, low + left, low + right
     return (
         w0 * t[p, 0] + w1 * t[q, 0] + w2 * t[r, 0] + w3 * t[s, 0],
@@ -54,6 +57,19 @@ def bilinear(t, textures, level, u, v):
         w0 * t[p, 2] + w1 * t[q, 2] + w2 * t[r, 2] + w3 * t[s, 2],
         w0 * t[p, 3] + w1 * t[q, 3] + w2 * t[r, 3] + w3 * t[s, 3],
     )
+
+
+@leaf()
+def fetch_bilinear(t, textures, level, u, v):
+    """Begin to read what ``bilinear`` will."""
+    n = textures.size >> level
+    i, j = int(np.floor(u * n - 0.5)), int(np.floor(v * n - 0.5))
+    base, column, right = textures.start[level], i & (n - 1), (i + 1) & (n - 1)
+    top, low = base + (j & (n - 1)) * n, base + ((j + 1) & (n - 1)) * n
+    fetch(t, top + column)  # type: ignore[call-arg]
+    fetch(t, low + column)
+    fetch(t, top + right)
+    fetch(t, low + right)
 
 
 @leaf()

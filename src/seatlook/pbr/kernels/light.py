@@ -73,34 +73,54 @@ def angle_of(lights, k, p):
     return lights.size[k] / np.sqrt(dot(to, to))
 
 
-@leaf()
-def towards_part(lights, angle, l, q):
-    """Unit direction to point q of a light's disc around ``l``, how wide its part is, its share.
+class Disc(NamedTuple):
+    """A light as a sample sees it: unit directions of its middle, and two across it.
 
-    The second value is what the part adds to the squared width of a lobe: twice the variance of
-    the half-vectors, a sixteenth of the squared angle over the whole disc per axis. By the third
-    the parts together light a plane facing ``l`` like the whole.
+    ``angle`` [rad]: angular radius, 0 where the middle stands for all; ``radius`` [rad]: that of
+    the part around a point; ``wider``: what the part adds to the squared width of a lobe, twice
+    the variance of the half-vectors, a sixteenth of the squared angle over the whole disc per axis.
     """
-    wider = 0.125 * angle * angle
+
+    middle: tuple[float, float, float]
+    t: tuple[float, float, float]
+    s: tuple[float, float, float]
+    angle: float
+    radius: float
+    wider: float
+
+
+@leaf()
+def disc_of(lights, angle, middle):
+    """Disc of angular radius ``angle`` [rad] around the unit direction ``middle``."""
+    t, s = across(middle)
+    points, wider = len(lights.disc), 0.125 * angle * angle
+    radius = angle / np.sqrt(points)
     # Smaller than any lobe: the middle stands for all.
     if angle < SMALL:
-        return l, wider, 1.0
-    t, s = across(l)
-    d = along(along(l, angle * lights.disc[q, 0], t), angle * lights.disc[q, 1], s)
+        return Disc(middle, t, s, 0.0, radius, wider)
+    return Disc(middle, t, s, angle, radius, wider / points)
+
+
+@leaf()
+def towards_point(disc, x, y):
+    """Unit direction to a point of the unit disc on a light's, and the share of its part.
+
+    By the shares, the parts together light a plane facing the middle like the whole.
+    """
+    d = along(along(disc.middle, disc.angle * x, disc.t), disc.angle * y, disc.s)
     length = np.sqrt(dot(d, d))
     scale = 1.0 / length
-    d = (d[0] * scale, d[1] * scale, d[2] * scale)
-    return d, wider / len(lights.disc), length
+    return (d[0] * scale, d[1] * scale, d[2] * scale), length
 
 
 @leaf()
 def parts_of(q, count, points):
     """At how many of the ``points`` of a light's disc sample q looks, with ``count`` facets.
 
-    -3 stands for a pixel, -1 and -2 for half of one. Facets share four points among themselves:
-    if all of a sample looked at one, its light would go with its place.
+    -3 stands for a pixel, -1 and -2 for half of one. Four facets or more share four points among
+    themselves: if all of a sample looked at one, its light would go with its place.
     """
-    if q == -3 or (q >= 0 and count > 0 and points >= 4):
+    if q == -3 or (q >= 0 and count >= 4 and points >= 4):
         return 4
     return 1 if q >= 0 else 2
 

@@ -10,24 +10,18 @@ from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, brdf_isotropic, view_of
-from seatlook.pbr.kernels.facets import (
-    ROWS,
-    brdf_facets,
-    faceted,
-    layers_to_eye,
-    mirrored_facets,
-    spread,
-)
+from seatlook.pbr.kernels.facet_light import brdf_facets, look_at_discs
+from seatlook.pbr.kernels.facets import ROOM, faceted, layers_to_eye, mirrored_facets, spread
 from seatlook.pbr.kernels.grain import Textures, grain, holes
 from seatlook.pbr.kernels.light import (
-    SMALL,
     above_horizon,
     angle_of,
     arriving,
+    disc_of,
     panorama_towards,
     parts_of,
     point_of,
-    towards_part,
+    towards_point,
 )
 from seatlook.pbr.kernels.measured import Measured, measured
 from seatlook.pbr.kernels.stitch import Thread, away_from_seam, reach, relief, seam_at, tilt
@@ -37,8 +31,8 @@ from seatlook.pbr.kernels.surface import (
     cross,
     dot,
     meet,
+    meet_plane,
     ray_through,
-    row,
     row_of,
     unit,
 )
@@ -46,8 +40,6 @@ from seatlook.pbr.kernels.tables import coupling_at
 
 # Pixels across the squares in which a picture is shaded.
 _TILE = 16
-# Cosine between normals of neighbouring samples that count as one: 2 degrees.
-_UNBENT = 0.9994
 
 
 class Look(NamedTuple):
@@ -201,10 +193,11 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, side, wor
 
     ``hit``: (weight, weight, distance, face normal, unit ray, angle between samples);
     ``visible`` (k,): share of each light that is not hidden; ``q``: number of the sample in its
-    pixel, -1 or -2 where it is the first or second that stands for two, -3 where it does for four.
+    pixel, -1 or -2 where it is the first or second that stands for two, -3 where it does for four;
+    ``side``: facets along each side of its relief.
     """
-    material, v = look.materials[mesh.panel[f]], place.v
-    even, covers, count = material.anisotropy == 0.0, 0, 0
+    panel = mesh.panel[f]
+    material, v, covers, count = look.materials[panel], place.v, 0, 0
     if faceted(material):
         covers, count = 2 if q == -3 else 1, side * side
     bare = _detail(mesh, look, eye, material, f, hit, place, covers, side, facets)
@@ -217,48 +210,50 @@ def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, side, wor
         material = look.changed[0]
     n = towards_eye(n, v)
     warp, weft = place.warp, place.weft
-    if not even:
+    if material.anisotropy != 0.0:
         warp, weft = frame(n, warp)
     out, f_out = work[0], work[1]
     view = view_of(look.tables, material, roughness, colour, dot(warp, v), dot(weft, v), dot(n, v))
-    mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
-    layers, fibres = look.layers[mesh.panel[f]], look.fibres[mesh.panel[f]]
+    mean = coupling_at(look.couplings[panel], view.table_roughness)
+    layers, fibres = look.layers[panel], look.fibres[panel]
     shares = (1.0, 1.0)
     if count > 0:
         layers_to_eye(layers, facets, count)
         shares = mirrored_facets(material, view, facets, count, place.n, within, v)
+        look_at_discs(lights, q, facets, count)
     _from_around(look, around, place, material, view, beside, n, shares, work)
     for k in range(len(lights.near)):
         if visible[k] <= 0.0:
             continue
         middle, e = arriving(lights, k, place.p)
-        angle = angle_of(lights, k, place.p)
+        disc = disc_of(lights, angle_of(lights, k, place.p), middle)
+        if count > 0:
+            wide, m = within, place.n
+            brdf_facets(
+                material, layers, fibres, mean, view, facets, count, disc, wide, m, v, f_out
+            )
+            for c in range(3):
+                out[c] += f_out[c] * e[c] * visible[k]
+            continue
         points = len(lights.disc)
-        parts = parts_of(q, count, points) if angle >= SMALL else 1
+        parts = parts_of(q, 0, points) if disc.angle > 0.0 else 1
         for part in range(parts):
             point = point_of(q, part, parts, points)
-            l, wider, share = towards_part(lights, angle, middle, point)
-            light = visible[k] * share / parts
-            smooth, radius = dot(place.n, l), angle / np.sqrt(points)
-            if count > 0:
-                towards = (l, wider + within, smooth, radius, part, parts)
-                brdf_facets(material, layers, fibres, mean, view, facets, count, towards, v, f_out)
-                for c in range(3):
-                    out[c] += f_out[c] * e[c] * light
-                continue
-            NoL = above_horizon(dot(n, l), smooth, radius)
+            l, share = towards_point(disc, lights.disc[point, 0], lights.disc[point, 1])
+            NoL = above_horizon(dot(n, l), dot(place.n, l), disc.radius)
             if NoL <= 1e-5:
                 continue
-            if even:
-                h = unit(along(v, 1.0, l))
+            if material.anisotropy == 0.0:
+                h, wide = unit(along(v, 1.0, l)), disc.wider + beside
                 NoH, LoH = min(1.0, dot(n, h)), min(1.0, dot(l, h))
-                more = wider + beside
-                brdf_isotropic(look.tables, material, mean, view, more, NoL, NoH, LoH, f_out)
+                brdf_isotropic(
+                    look.tables, material, fibres, mean, view, wide, NoL, NoH, LoH, f_out
+                )
             else:
                 x, y = dot(warp, l), dot(weft, l)
-                brdf(look.tables, material, mean, view, wider, x, y, NoL, f_out)
+                brdf(look.tables, material, fibres, mean, view, disc.wider, x, y, NoL, f_out)
             for c in range(3):
-                out[c] += f_out[c] * NoL * e[c] * light
+                out[c] += f_out[c] * NoL * e[c] * share * visible[k] / parts
     for c in range(3):
         out[c] *= kept
 
@@ -297,47 +292,21 @@ def _plain(material):
     return even and material.maps < 0 and material.perforation_diameter == 0.0
 
 
-@leaf()
-def _alike(mesh, ids, visibility, reach, x, y):
-    """Whether the 2 x 2 samples from (x, y) see one panel, unbent, unshadowed by an edge, no seam.
-
-    Half of them are enough then, or one.
-    """
-    f = ids[y, x]
-    i, j, k = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
-    if min(mesh.seam[i, 0], mesh.seam[j, 0], mesh.seam[k, 0]) < reach:
-        return False
-    n = row(mesh.normals, i)
-    for q in range(1, 4):
-        g = ids[y + q // 2, x + q % 2]
-        for light in range(len(visibility)):
-            if visibility[light, y + q // 2, x + q % 2] != visibility[light, y, x]:
-                return False
-        if g == f:
-            continue
-        if g < 0 or mesh.panel[g] != mesh.panel[f]:
-            return False
-        if dot(row(mesh.normals, mesh.faces[g, 0]), n) < _UNBENT:
-            return False
-    return True
-
-
 @njit(cache=True)
-def shade(mesh, eye, ids, look, lights, around, visibility, factor, side, backdrop, out):
+def shade(mesh, eye, ids, alike, look, lights, around, visibility, factor, side, backdrop, out):
     """Mean radiance of ``factor`` x ``factor`` samples into each pixel of ``out`` (h, w, 3).
 
     ``ids`` (h factor, w factor): face per sample, -1 for none, where ``backdrop`` (3,) is seen;
-    ``visibility`` likewise, (k, ., .), in 1/255; ``side``: facets along each side of a relief. Of
-    2 x 2 samples that are alike, only the diagonal is shaded, each for an area twice as large, or
-    one for all where the surface has no relief or facets show it.
+    ``visibility`` likewise, (k, ., .), in 1/255; ``side``: facets along each side of a pixel. Where
+    a pixel's 2 x 2 samples are ``alike`` (h, w), only the diagonal is shaded, each for an area
+    twice as large, or one for all where the surface has no relief or facets show it.
     Returns the greatest radiance of the surface, nan where one is not finite.
     """
     work, total, brightest = np.zeros((3, 3)), np.zeros(3), 0.0
-    visible, facets = np.ones(len(lights.near)), np.empty((ROWS, side * side))
+    visible, facets = np.ones(len(lights.near)), np.empty(ROOM)
     spread = np.sqrt(dot(row_of(eye.right), row_of(eye.right)))
     spread /= np.sqrt(dot(row_of(eye.first), row_of(eye.first)))
-    near_seam = reach(look.thread)
-    height, width = ids.shape[0] // factor, ids.shape[1] // factor
+    height, width = alike.shape
     columns = -(-width // _TILE)
     # By tiles: neighbours lie on the same faces, whose vertices are then still at hand.
     for number in range(columns * -(-height // _TILE) * _TILE * _TILE):
@@ -347,44 +316,37 @@ def shade(mesh, eye, ids, look, lights, around, visibility, factor, side, backdr
         if y >= height or x >= width:
             continue
         total[:], missed = 0.0, 0
-        first = ids[factor * y, factor * x]
-        pair = factor == 2 and first >= 0
-        pair = pair and _alike(mesh, ids, visibility, near_seam, 2 * x, 2 * y)
+        first, pair, weight = ids[factor * y, factor * x], alike[y, x], 1.0 / (factor * factor)
         one = pair and _plain(look.materials[mesh.panel[first]])
-        weight = 1.0 / (factor * factor)
         if pair:
-            ray = ray_through(eye, 2 * x + 0.5, 2 * y + 0.5)
-            b1, b2, t, plane = meet(mesh, eye, first, ray)
-            hit = (b1, b2, t, plane, ray, np.sqrt(2.0) * spread)
-            place = _place(mesh, around, first, hit)
             weight = 1.0 if one else 0.5
-            if one:
-                ray = ray_through(eye, 2 * x, 2 * y)
-                b1, b2, t, plane = meet(mesh, eye, first, ray)
-                hit = (b1, b2, t, plane, ray, spread)
+            ray = ray_through(eye, 2 * x + 0.5, 2 * y + 0.5)
+            b1, b2, t, plane = meet_plane(mesh, eye, first, ray)
+            hit = (b1, b2, t, plane, ray, 2.0 * np.sqrt(weight) * spread)
+            place = _place(mesh, around, first, hit)
         for q in range(factor * factor):
             if (pair and q % 3) or (one and q):
                 continue
             i, j = x * factor + q % factor, y * factor + q // factor
-            f = ids[j, i]
+            f, point = ids[j, i], q
             if f < 0:
                 missed += 1
                 continue
-            point = q
-            if not one:
-                ray = ray_through(eye, i, j)
-                b1, b2, t, plane = meet(mesh, eye, f, ray)
-                hit = (b1, b2, t, plane, ray, np.sqrt(2.0) * spread if pair else spread)
             if one:
                 point = -3
             elif pair:
                 point = -1 if q == 0 else -2
-            else:
+            if not one:
+                ray = ray_through(eye, i, j)
+                b1, b2, t, plane = meet(mesh, eye, f, ray)
+                hit = (b1, b2, t, plane, ray, np.sqrt(2.0) * spread if pair else spread)
+            if not pair:
                 place = _place(mesh, around, f, hit)
             for k in range(len(visible)):
                 visible[k] = visibility[k, j, i] / 255.0
+            few = side if pair else -(-side // factor)
             sample(
-                mesh, look, eye, lights, around, f, hit, place, point, visible, side, work, facets
+                mesh, look, eye, lights, around, f, hit, place, point, visible, few, work, facets
             )
             for c in range(3):
                 total[c] += weight * work[0, c]

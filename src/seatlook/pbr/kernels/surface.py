@@ -28,6 +28,10 @@ class Mesh(NamedTuple):
     seam: npt.NDArray[np.float64]
 
 
+# How far beside a face its plane stands for what is there, as a share of the face's height.
+_BESIDE = 0.5
+
+
 class Eye(NamedTuple):
     """Pinhole: a sample in column i, row j looks along ``first + i right + j down``, each (3,)."""
 
@@ -100,11 +104,19 @@ def ray_through(eye, column, line):
 
 @leaf()
 def meet(mesh, eye, f, ray):
-    """Where a ray meets the plane of face f: (weight, weight, distance, unit normal).
+    """Where a ray meets face f: (weight, weight, distance, unit normal).
 
     Weights are held inside the triangle: a rasteriser may give a sample on the edge to either
     side.
     """
+    b1, b2, t, n = meet_plane(mesh, eye, f, ray)
+    b1 = min(max(b1, 0.0), 1.0)
+    return b1, min(max(b2, 0.0), 1.0 - b1), t, n
+
+
+@leaf()
+def meet_plane(mesh, eye, f, ray):
+    """The same on the plane of the face, a little beside it too."""
     a = row(mesh.vertices, mesh.faces[f, 0])
     e1 = minus(row(mesh.vertices, mesh.faces[f, 1]), a)
     e2 = minus(row(mesh.vertices, mesh.faces[f, 2]), a)
@@ -114,8 +126,8 @@ def meet(mesh, eye, f, ray):
     t = dot(n, to) / slope if slope != 0.0 else np.sqrt(dot(to, to))
     p = (t * ray[0] - to[0], t * ray[1] - to[1], t * ray[2] - to[2])
     size = 1.0 / dot(n, n)
-    b1 = min(max(dot(cross(p, e2), n) * size, 0.0), 1.0)
-    b2 = min(max(dot(cross(e1, p), n) * size, 0.0), 1.0 - b1)
+    b1 = min(max(dot(cross(p, e2), n) * size, -_BESIDE), 1.0 + _BESIDE)
+    b2 = min(max(dot(cross(e1, p), n) * size, -_BESIDE), 1.0 + _BESIDE)
     s = np.sqrt(size)
     return b1, b2, t, (n[0] * s, n[1] * s, n[2] * s)
 

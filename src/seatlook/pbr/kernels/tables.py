@@ -7,17 +7,15 @@ from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import (
-    ROUGHNESS_LOW,
     D_Charlie,
     V_Neubelt,
     V_SmithGGXCorrelated,
     alphas,
     layers_at,
-    lookup,
-    lookup_mean,
     means_of,
     rows_of,
 )
+from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW, lookup, lookup_mean
 
 
 @leaf()
@@ -148,13 +146,13 @@ def layers(tables, materials, out):
 
 @leaf()
 def fibres(tables, materials, out):
-    """Distribution of each material's nap over 1 - NoH^2, into ``out`` (p, n)."""
+    """Distribution of each material's nap over the sine of the half-vector, into ``out`` (p, n)."""
     n = out.shape[1]
     for p in range(len(materials)):
         roughness = materials[p].sheen_roughness
         norm = lookup_mean(tables.sheen_norm, roughness)
         for j in range(n):
-            out[p, j] = norm * D_Charlie(roughness * roughness, np.sqrt(1.0 - j / (n - 1)))
+            out[p, j] = norm * D_Charlie(roughness * roughness, np.sqrt(1.0 - (j / (n - 1)) ** 2))
 
 
 @leaf()
