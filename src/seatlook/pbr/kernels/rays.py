@@ -26,6 +26,8 @@ from seatlook.pbr.kernels.surface import (
 ABOVE = 2e-5
 # What a ray meets other than the front of a face: the sky, what does not shine; or it is not sent.
 OPEN, DARK, UNSENT = -1, -2, -3
+# Points on a rim.
+_RIM = 6
 _EMPTY, _HIDDEN, _AWAY, _LIT, _GRAZING = 0, 1, 2, 3, 4
 
 
@@ -95,6 +97,21 @@ def _state(bvh, mesh, eye, f, i, j, lights, k, stack):
     if c < angle and angle >= SMALL:
         return _GRAZING
     return _LIT if _reaches(bvh, p, plane, l, far, stack) else _HIDDEN
+
+
+@leaf()
+def _rim_agrees(bvh, lights, k, start, shift, is_lit, stack):
+    """Whether points on the rim of light k are all seen, or all hidden, as its middle is.
+
+    An edge between two of them hides, or shows, 3 % of the disc at most.
+    """
+    p, plane, n = start
+    disc = _disc(lights, k, p)
+    for turn in range(_RIM):
+        d, far = _to_disc(disc, 1.0, (turn + shift) / _RIM)
+        if dot(n, d) <= 0.0 or _reaches(bvh, p, plane, d, far, stack) != is_lit:
+            return False
+    return True
 
 
 @leaf()
@@ -182,8 +199,9 @@ def _share_seen(bvh, lights, k, start, shift, first, step, total, stack):
 def shadows(bvh, mesh, eye, ids, lights, k, factor, rays, reach, out):
     """Share of light k [1/255] that each sample sees, into ``out`` like ``ids``.
 
-    Where a pixel and its neighbours within ``reach`` agree, one ray tells; near a shadow's edge
-    every sample sends ``rays`` to its own stratified points of the light's disc.
+    Where a pixel and its neighbours within ``reach`` agree, one ray tells, and where the rim of the
+    light agrees with its middle, those to it; in a penumbra every sample sends ``rays`` to its own
+    stratified points of the light's disc.
     """
     height, width = ids.shape[0] // factor, ids.shape[1] // factor
     state = np.zeros((height, width), np.uint8)
@@ -197,10 +215,16 @@ def shadows(bvh, mesh, eye, ids, lights, k, factor, rays, reach, out):
             edge = state[y, x] == _GRAZING or state[y, x] == _AWAY
             edge = edge or (_within(lit, x, y, reach) and _within(dark, x, y, reach))
             shift = (even(x, y, 2 * k), even(x, y, 2 * k + 1))
+            # Once per pixel, and not where that takes more rays than it saves.
+            asked = rays * step <= _RIM or not (state[y, x] == _LIT or state[y, x] == _HIDDEN)
             for q in range(step):
                 i, j = x * factor + q % factor, y * factor + q // factor
                 if ids[j, i] < 0:
                     continue
+                if edge and not asked:
+                    start, is_lit = _start(mesh, eye, ids[j, i], i, j), state[y, x] == _LIT
+                    edge = not _rim_agrees(bvh, lights, k, start, shift[0], is_lit, stack)
+                asked = True
                 if not edge:
                     out[j, i] = 255 if state[y, x] == _LIT else 0
                     continue
