@@ -17,7 +17,7 @@ MODULES := $(shell cd src && find seatlook -name '[a-z]*.py' -not -path '*/cli/*
 	-not -path '*/kernels/*' | sort | sed 's|/|.|g; s|\.py$$||')
 
 # Numba sees a change in the file of a kernel, not in the files of the kernels it calls.
-export NUMBA_CACHE_DIR ?= $(CURDIR)/.numba_cache/$(shell cat src/seatlook/*/kernels/*.py | cksum | cut -d ' ' -f 1)
+export NUMBA_CACHE_DIR ?= $(CURDIR)/.numba_cache/$(shell find src -path "*/kernels/*.py" | LC_ALL=C sort | xargs cat | cksum | cut -d ' ' -f 1)
 
 .PHONY: demo test validate browser check format bench docs clean
 .DELETE_ON_ERROR:

@@ -85,7 +85,7 @@ sliders
 # %%
 pbr.offscreen_backend()
 eased = comparison.variants["eased"]
-io.export(eased.solution, eased.indices, folder / "eased.vtp")
+io.export_cover(eased.solution, eased.indices, folder / "eased.vtp")
 plotter = pyvista.Plotter(off_screen=True, window_size=(width, width * 9 // 16))
 plotter.add_mesh(pyvista.read(folder / "eased.vtp"), scalars="_W2", cmap="viridis")
 plotter.camera_position = [(0.9, -1.2, 0.9), (0.0, 0.0, 0.05), (0.0, 0.0, 1.0)]

@@ -13,7 +13,7 @@ import numpy as np
 from PIL import Image
 
 from seatlook.io import load_scene, read_material, read_result
-from seatlook.pbr.studio import Studio
+from seatlook.pbr.shading.studio import Studio
 
 LOOKS = ("black-leather", "bright-leather", "pvc", "suede", "woven")
 SHEET = Path(__file__).parents[1] / "docs" / "pictures" / "contact-sheet.png"

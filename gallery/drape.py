@@ -18,9 +18,9 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from covers import cover, foam, sheet, sphere
 from seatlook.model import Cover, Curve, Solution, Stage
 from seatlook.solver import solve
+from support.covers import cover, foam, sheet, sphere
 
 SIDE, RADIUS, THICKNESS, YOUNG = 0.5, 0.1, 5e-4, 30e3
 

@@ -18,17 +18,17 @@ import numpy as np
 ROOT = Path(__file__).parents[1]
 CHARTS = ROOT / "docs" / "charts"
 TABLE = CHARTS / "envelopes.csv"
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "solver" / "failures")]
+sys.path.insert(0, str(ROOT / "tests"))
 
 import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 from matplotlib.colors import ListedColormap  # noqa: E402
-from test_methods import explicit_limit, hanging  # noqa: E402
 
 from seatlook.solver import Explicit  # noqa: E402
 from seatlook.solver.sheet import SheetError, SheetSolution  # noqa: E402
+from support.reference.hanging import explicit_limit, hanging  # noqa: E402
 
 THICKNESS = (1e-1, 1e-2, 1e-3, 1e-4)
 RATIO = (1.0, 1e1, 1e3, 1e5)

@@ -21,7 +21,7 @@ import numpy as np
 from seatlook import assemble, load_scene, solve, surface_strains, wrinkle_indices, zone_table
 from seatlook.cli._demo import write_demo
 from seatlook.model import Scene
-from seatlook.solver.standoff import standoff, zone_standoff
+from seatlook.results.gap import standoff, zone_standoff
 
 TABLE = Path(__file__).parents[1] / "docs" / "charts" / "foam_model.csv"
 # name -> factors on the column's stress and on the half-space modulus, seed

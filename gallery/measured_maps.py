@@ -15,8 +15,8 @@ from PIL import Image
 from seatlook.io import load_scene, read_material, read_result
 from seatlook.io.texture_maps import read_texture_maps
 from seatlook.model import Appearance, Thread, named_view
-from seatlook.pbr.studio import Studio
-from seatlook.pbr.texture import baked
+from seatlook.pbr.reflectance.relief import baked
+from seatlook.pbr.shading.studio import Studio
 
 PICTURE = Path(__file__).parents[1] / "docs" / "pictures" / "measured-maps.png"
 WEAVE = Appearance(

@@ -29,8 +29,8 @@ ROOT = Path(__file__).parents[1]
 TABLE = ROOT / "docs" / "charts" / "peers.csv"
 sys.path.insert(0, str(ROOT / "tests"))
 
-import meshes  # noqa: E402
-from elastica import hanging_tip  # noqa: E402
+from support import meshes  # noqa: E402
+from support.reference.elastica import hanging_tip  # noqa: E402
 
 COLUMNS = ("panel", "series", "parameter", "seed", "cpu_seconds", "error")
 GAMMA, SLENDERNESS, WIDTH = 10.0, 0.02, 0.2

@@ -24,7 +24,7 @@ import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
-from rolled import missed  # noqa: E402
+from support.reference.rolled import missed  # noqa: E402
 
 KINDS = {"uns": "o", "right": "s", "sliver": "^"}
 EDGES = (10, 14, 20, 28, 40, 56)

@@ -27,13 +27,13 @@ import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
-import patch  # noqa: E402
-from seatlook import evaluation  # noqa: E402
 from seatlook.assembly import assemble  # noqa: E402
-from seatlook.kinematics import principal_values  # noqa: E402
+from seatlook.chain import evaluation  # noqa: E402
+from seatlook.mesh.kinematics import principal_values  # noqa: E402
 from seatlook.model import Scene, Solution  # noqa: E402
 from seatlook.solver import solve  # noqa: E402
 from seatlook.wrinkle import MEASURES, section, signed_ratio  # noqa: E402
+from support import patch  # noqa: E402
 
 FloatArray = npt.NDArray[np.float64]
 EASES, STARVED = (0.0, 0.005, 0.01, 0.02, 0.04), (0.0, 0.01, 0.02, 0.03, 0.04)

@@ -27,7 +27,7 @@ import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
-from stretched import LENGTH, POISSON, stretched, wave_and_amplitude  # noqa: E402
+from support.reference.stretched import LENGTH, POISSON, stretched, wave_and_amplitude  # noqa: E402
 
 MEASURED = {"wave_mm": "wave length [mm]", "amplitude_t": "amplitude / thickness"}
 LABELS = {"thickness_mm": "thickness [mm] (10 % stretch)", "stretch": "stretch (0.1 mm thick)"}

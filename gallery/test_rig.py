@@ -24,11 +24,13 @@ import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
-import fabrics  # noqa: E402
-import meshes  # noqa: E402
-from elastica import hanging_tip  # noqa: E402
 from seatlook.model import Curve, Fabric  # noqa: E402
 from seatlook.solver import solve_sheet  # noqa: E402
+from support import (  # noqa: E402
+    fabrics,
+    meshes,
+)
+from support.reference.elastica import hanging_tip  # noqa: E402
 
 BACK = {
     "warp_unloading": Curve(strain=[0.0, 0.01, 0.03], stiffness=[1500.0, 6000.0, 12000.0]),

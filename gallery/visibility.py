@@ -14,9 +14,9 @@ import numpy as np
 
 from seatlook import io
 from seatlook.model import Camera, Scene, Solution
-from seatlook.study.amplitude import reference_rig
-from seatlook.study.light_search import RigAt, bulb_rig, search_light, sun_rig
-from seatlook.study.view import View
+from seatlook.visibility.heights import reference_rig
+from seatlook.visibility.light_search import RigAt, bulb_rig, search_light, sun_rig
+from seatlook.visibility.view import View
 
 BULBS = {"front": (0.0, 45.0), "left": (90.0, 45.0), "rear": (180.0, 45.0), "right": (270.0, 45.0)}
 RAKING_DEG = 20.0

@@ -23,24 +23,26 @@ import numpy as np
 ROOT = Path(__file__).parents[1]
 CHARTS = ROOT / "docs" / "charts"
 TABLE = CHARTS / "work_precision.csv"
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "solver" / "failures")]
+sys.path.insert(0, str(ROOT / "tests"))
 
 import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
-from test_meshes import threshold  # noqa: E402
 
-import fabrics  # noqa: E402
-import meshes  # noqa: E402
-from counter_examples import position_based, sheet_of  # noqa: E402
-from elastica import hanging_tip  # noqa: E402
-from morley import MorleySheet  # noqa: E402
-from seatlook.solver.loads import DeadLoad  # noqa: E402
-from seatlook.solver.newton import Potential  # noqa: E402
+from seatlook.solver.element.loads import DeadLoad  # noqa: E402
+from seatlook.solver.methods.newton import Potential  # noqa: E402
+from seatlook.solver.process.statics import equilibrium  # noqa: E402
 from seatlook.solver.sheet import solve_sheet  # noqa: E402
-from seatlook.solver.statics import equilibrium  # noqa: E402
-from stretched import WAVE, stretched, wave_and_amplitude  # noqa: E402
+from support import (  # noqa: E402
+    fabrics,
+    meshes,
+)
+from support.reference.buckling import threshold  # noqa: E402
+from support.reference.counter_examples import position_based, sheet_of  # noqa: E402
+from support.reference.elastica import hanging_tip  # noqa: E402
+from support.reference.morley import MorleySheet  # noqa: E402
+from support.reference.stretched import WAVE, stretched, wave_and_amplitude  # noqa: E402
 
 COLUMNS = ("panel", "series", "parameter", "seed", "cpu_seconds", "error")
 Case = tuple[str, str, float, int, Callable[[], float]]

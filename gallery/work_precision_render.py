@@ -25,19 +25,19 @@ ROOT = Path(__file__).parents[1]
 CHARTS = ROOT / "docs" / "charts"
 TABLE = CHARTS / "work_precision_render.csv"
 KEPT = ROOT / "out" / "render-reference"
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "gallery")]
+sys.path.insert(0, str(ROOT / "tests"))
 
 import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
-from path_tracer import trace  # noqa: E402
-from render_error import DIRECT, FULL, camera, compare, look, relief_of, scene  # noqa: E402
-from stock_pbr import stock  # noqa: E402
 
 from seatlook.model import Appearance, Rig  # noqa: E402
 from seatlook.pbr.quality import TIERS, Quality  # noqa: E402
-from seatlook.pbr.studio import Studio  # noqa: E402
+from seatlook.pbr.shading.studio import Studio  # noqa: E402
+from support.reference.path_tracer import trace  # noqa: E402
+from support.reference.render_error import DIRECT, FULL, camera, compare, look, relief_of, scene  # noqa: E402
+from support.reference.stock_pbr import stock  # noqa: E402
 
 COLUMNS = ("light", "case", "series", "parameter", "cpu_seconds", "flip", "block_error")
 # Samples per pixel of one pass, and passes of each of two references.

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 # Run once by hand, with packages that the project does not need.
-collect_ignore = ["sensory/record_cvvdp.py"]
+collect_ignore = ["support"]
 
 
 def pytest_configure(config: pytest.Config) -> None:

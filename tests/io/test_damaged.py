@@ -10,10 +10,10 @@ import trimesh
 
 from seatlook.errors import InputError, InputWarning
 from seatlook.io.curves import read_curves
-from seatlook.io.dxf import read_dxf
 from seatlook.io.material import materials_dir, read_foam_material, read_material
 from seatlook.io.mesh import read_foam
-from seatlook.io.seams import read_seams
+from seatlook.io.pattern.dxf import read_dxf
+from seatlook.io.pattern.seams import read_seams
 from seatlook.io.surface import read_surface
 
 DATA = Path(__file__).parents[1] / "data"

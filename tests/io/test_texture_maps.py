@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from scene_files import TEXT, write_two_panels
 from seatlook.errors import InputError
 from seatlook.io.material import materials_dir, read_material
-from seatlook.io.scene import load_scene
+from seatlook.io.scene.read import load_scene
 from seatlook.io.texture_maps import LARGEST, map_files, read_texture_maps
 from seatlook.model.colour import srgb_decode, srgb_encode
+from support.scene_files import TEXT, write_two_panels
 
 LEATHER = (materials_dir() / "black-leather.toml").read_text()
 LOOK = "albedo = [0.025, 0.025, 0.026]\nroughness = 0.40\n"

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatlook.io._schema import (
+from seatlook.io.schema import (
     Array,
     Flag,
     Integer,
@@ -16,7 +16,7 @@ from seatlook.io._schema import (
     Texts,
     read_table,
 )
-from seatlook.io._toml import index_lines, read_document
+from seatlook.io.toml import index_lines, read_document
 
 TEXT = '''# comment
 schema = 1

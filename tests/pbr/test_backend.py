@@ -18,7 +18,7 @@ ASK = """
 import sys
 from seatlook.errors import SeatlookError
 from seatlook.pbr import render
-from pbr_scenes import above, flat, sheet
+from support.reference.lit_sheets import above, flat, sheet
 from seatlook.model import Rig, sun
 try:
     rig = Rig(name="sun", lights=(sun(elevation_deg=60, azimuth_deg=0),))

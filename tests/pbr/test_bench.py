@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pbr_scenes import sheet
 from seatlook.io.material import read_material
 from seatlook.model import Rig, bulb, named_view, sun
-from seatlook.pbr.studio import Studio
+from seatlook.pbr.shading.studio import Studio
+from support.reference.lit_sheets import sheet
 
 pytestmark = [pytest.mark.bench, pytest.mark.render]
 MATERIALS = ("black-leather", "suede", "woven", "bright-leather", "pvc")

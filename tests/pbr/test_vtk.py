@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pbr_scenes import above, sheet
 from seatlook.errors import RenderError
 from seatlook.model import Camera, named_view
-from seatlook.pbr.kernels import bvh
-from seatlook.pbr.kernels.surface import ray_through
-from seatlook.pbr.studio import eye_of
+from seatlook.pbr.shading.kernels import bvh
+from seatlook.pbr.shading.kernels.surface import ray_through
+from seatlook.pbr.shading.studio import eye_of
+from support.reference.lit_sheets import above, sheet
 
 pytestmark = pytest.mark.render
 

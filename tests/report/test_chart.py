@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from seatlook.report.chart import HEIGHT, WIDTH, history_charts, number
+from seatlook.model.table import number
+from seatlook.report.page.chart import HEIGHT, WIDTH, history_charts
 
 
 @pytest.mark.parametrize(

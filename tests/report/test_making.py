@@ -2,12 +2,12 @@ import dataclasses
 
 import pytest
 
-import scenes
-from report.pages import page_data
 from seatlook.assembly import assemble
-from seatlook.report.making import making_section
-from seatlook.report.page import page_html
+from seatlook.report.page.write import page_html
+from seatlook.report.sections.making import making_section
 from seatlook.solver import solve
+from support import scenes
+from support.pages import page_data
 
 
 @pytest.fixture(scope="module")

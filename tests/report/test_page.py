@@ -11,9 +11,9 @@ from urllib.parse import unquote
 
 import pytest
 
-from report.pages import RIGS, TEXTURES, page_data
 from seatlook.errors import InputError
 from seatlook.report import Check, MapView, Table, write_page
+from support.pages import RIGS, TEXTURES, page_data
 
 
 class Elements(HTMLParser):

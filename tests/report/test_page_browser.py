@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -13,30 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from report.pages import RIGS, page_data, write_png
 from seatlook.report import write_page
-from seatlook.report.data import Spot
+from seatlook.report.page.data import Spot
+from support.browsers import all_images_decode
+from support.pages import RIGS, page_data, write_png
 
 pytestmark = pytest.mark.browser
-
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    sync_api = importlib.import_module("playwright.sync_api")
-    with sync_api.sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
-        yield chromium
-        chromium.close()
 
 
 @pytest.fixture(scope="module")
@@ -59,12 +40,6 @@ def page(browser: Any, address: str) -> Iterator[Any]:
     yield page
     context.close()
     assert said == []
-
-
-def all_images_decode(page: Any) -> bool:
-    page.evaluate("for (const i of document.images) i.loading = 'eager'")
-    page.wait_for_function("[...document.images].every(i => i.complete)")
-    return page.evaluate("[...document.images].every(i => i.naturalWidth > 0)")
 
 
 def pictures(page: Any) -> tuple[str, str]:

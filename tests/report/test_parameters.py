@@ -8,9 +8,9 @@ from types import MappingProxyType
 
 import numpy as np
 
-import scenes
 from seatlook.model import Appearance, Curve, TextureMaps
-from seatlook.report.parameters import parameter_tables, parameter_toml
+from seatlook.report.page.parameters import parameter_tables, parameter_toml
+from support import scenes
 
 
 def rows(table):

@@ -7,9 +7,9 @@ import tomllib
 import numpy as np
 import pytest
 
-from scene_files import write_two_panels
 from seatlook import io
-from seatlook.report.parameters import parameter_toml
+from seatlook.report.page.parameters import parameter_toml
+from support.scene_files import write_two_panels
 
 
 @pytest.fixture

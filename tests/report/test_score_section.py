@@ -6,13 +6,11 @@ import importlib
 
 import pytest
 
-from report.pages import page_data, picture, write_png
-from report.test_page_browser import browser
 from seatlook.report import Check, MapView, Table, write_page
-from seatlook.report.data import ScoreSection
-from seatlook.report.page import page_html
+from seatlook.report.page.data import ScoreSection
+from seatlook.report.page.write import page_html
+from support.pages import page_data, picture, write_png
 
-__all__ = ["browser"]  # the fixture
 MISSED = Check(name="A: vwi", value="9.66", limit="3", kept=False)
 SECTION = ScoreSection(
     grid=Table(heads=("VWI, height", "sun"), rows=(("suede <insert>", "3.75, > 1 mm"),)),

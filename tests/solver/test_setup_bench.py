@@ -5,9 +5,8 @@ import time
 import numpy as np
 import pytest
 
-import fabrics
-import meshes
-from seatlook.solver.elastic import ElasticSheet
+from seatlook.solver.element.elastic import ElasticSheet
+from support import fabrics, meshes
 
 
 @pytest.mark.bench

@@ -1,12 +1,11 @@
 import numpy as np
 import pytest
 
-import fabrics
-import meshes
-from elastica import hanging_tip
 from seatlook.errors import InputError
 from seatlook.model import Curve, Fabric
 from seatlook.solver.sheet import SheetError, solve_sheet
+from support import fabrics, meshes
+from support.reference.elastica import hanging_tip
 
 
 def cantilever(kind, gamma, slenderness, edges, **options):

@@ -4,7 +4,11 @@ import importlib
 import numpy as np
 import pytest
 
-from covers import (
+from seatlook import model
+from seatlook.errors import ConvergenceError, InputError, InvertedElementError
+from seatlook.solver import solve
+from seatlook.solver.process.process import Process
+from support.covers import (
     cover,
     cylinder,
     flat_foam,
@@ -15,10 +19,6 @@ from covers import (
     sphere,
     vertices_as_points,
 )
-from seatlook import model
-from seatlook.errors import ConvergenceError, InputError, InvertedElementError
-from seatlook.solver import solve
-from seatlook.solver.process import Process
 
 DROP = model.Stage(name="drop", start=0.0, end=0.2)
 STIFF = {"young": 60e3, "stress": np.array([0.0, 1e4, 2e4, 4e4, 8e4])}

@@ -8,8 +8,8 @@ import pytest
 from seatlook import io, mesh
 from seatlook.assembly import assemble
 from seatlook.cli._demo import write_demo
+from seatlook.results.energy_balance import energy_balance
 from seatlook.solver import solve
-from seatlook.solver.balance import energy_balance
 
 pytestmark = pytest.mark.validate
 

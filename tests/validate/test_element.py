@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import eigsh
 
-import fabrics
-import meshes
-from elastica import hanging_tip
-from rolled import missed
 from seatlook.model import Curve, Fabric
-from seatlook.solver.elastic import ElasticSheet
+from seatlook.solver.element.elastic import ElasticSheet
 from seatlook.solver.sheet import solve_sheet
-from waves import (
+from support import fabrics, meshes
+from support.reference.elastica import hanging_tip
+from support.reference.rolled import missed
+from support.reference.waves import (
     false_bending,
     flat,
     lateral_load,

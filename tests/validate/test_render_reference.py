@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatlook.pbr import brdf
 from seatlook.pbr.quality import TIERS
-from seatlook.pbr.studio import Studio
+from seatlook.pbr.reflectance import brdf
+from seatlook.pbr.shading.studio import Studio
 
 pytest.importorskip("flip_evaluator", reason="the dependency group reference is not installed")
 pytest.importorskip("mitsuba", reason="the dependency group reference is not installed")
 
-from path_tracer import find_llvm, layered_bsdf, load_mitsuba, trace
-from render_error import DIRECT, FULL, camera, compare, look, relief_of, scene
+from support.reference.path_tracer import find_llvm, layered_bsdf, load_mitsuba, trace
+from support.reference.render_error import DIRECT, FULL, camera, compare, look, relief_of, scene
 
 pytestmark = [
     pytest.mark.validate,

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-import patch
 from seatlook import model
 from seatlook.assembly import assemble
-from seatlook.evaluation import wrinkle_map
+from seatlook.chain.evaluation import wrinkle_map
+from seatlook.results.energy_balance import energy_balance
+from seatlook.results.gap import standoff
 from seatlook.solver import solve
-from seatlook.solver.balance import energy_balance
-from seatlook.solver.standoff import standoff
 from seatlook.wrinkle import zone_table
+from support import patch
 
 pytestmark = pytest.mark.validate
 SEEDS = range(5)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stretched import AMPLITUDE, WAVE, stretched, wave_and_amplitude
+from support.reference.stretched import AMPLITUDE, WAVE, stretched, wave_and_amplitude
 
 pytestmark = pytest.mark.validate
 

@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 
 from seatlook import wrinkle
 from seatlook.errors import InputError
-from seatlook.kinematics import principal_values
+from seatlook.mesh.kinematics import principal_values
 
 T = 0.0012
 

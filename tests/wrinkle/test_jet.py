@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from meshes import KINDS, rectangle
 from seatlook.wrinkle.jet import vertex_curvature
+from support.meshes import KINDS, rectangle
 
 WAVE = 0.06
 H = WAVE / 12

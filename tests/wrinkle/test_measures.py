@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 from seatlook import wrinkle
 from seatlook.errors import InputError
 from seatlook.wrinkle import MEASURES, TENSION_STATES, isotropic_membrane
-from wrinkle_samples import shaped, wave
+from support.wrinkle_samples import shaped, wave
 
 # major, minor, Poisson ratio, R of eq. (4), signed ratio, tension field
 STATES = {

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from meshes import rectangle
 from seatlook.wrinkle.orientation import agree
+from support.meshes import rectangle
 
 
 def quads(n=5, m=4):

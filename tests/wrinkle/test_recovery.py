@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from meshes import KINDS
 from seatlook import wrinkle
 from seatlook.errors import InputError
 from seatlook.model import Anchor, Points
-from wrinkle_samples import SIZE, shaped, wave
+from support.meshes import KINDS
+from support.wrinkle_samples import SIZE, shaped, wave
 
 WAVE = 0.06
 H = WAVE / 12

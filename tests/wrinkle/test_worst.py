@@ -6,7 +6,7 @@ import pytest
 from seatlook import wrinkle
 from seatlook.errors import InputError
 from seatlook.model import Anchor, Points, Stitching
-from wrinkle_samples import SIZE, shaped
+from support.wrinkle_samples import SIZE, shaped
 
 
 def groove(x0, y0, *, depth=0.0015, width=0.006, length=0.03):

@@ -5,7 +5,7 @@ import pytest
 
 from seatlook import wrinkle
 from seatlook.wrinkle import zone
-from wrinkle_samples import shaped, wave
+from support.wrinkle_samples import shaped, wave
 
 
 def test_quantile_counts_area_not_faces():

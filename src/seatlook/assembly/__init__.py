@@ -11,7 +11,7 @@ from seatlook.assembly.builder import Builder
 from seatlook.assembly.hem import hem_of
 from seatlook.errors import AssemblyError, Problem
 from seatlook.model import Cover, FloatArray, Hook, IntArray, Panel, Scene
-from seatlook.zones import zones
+from seatlook.model.zones import zones
 
 # Wavelengths [m] of a cut panel's unevenness: from the shortest wrinkle of a cover on its foam to
 # the size of a panel. Shorter waves would be crumpling, and store as much work as the making takes.

@@ -4,9 +4,9 @@ from seatlook.cli import (
     _compare,
     _demo,
     _init,
+    _jury,
     _machine,
     _making,
-    _panel,
     _precision,
     _run,
     _score,
@@ -36,4 +36,4 @@ app.command(_run.render)
 app.command(_machine.materials)
 app.command(_machine.doctor)
 app.command(_score.score)
-app.command(_panel.panel)
+app.command(_jury.panel)

@@ -37,9 +37,9 @@ def compare(
     result
         NAME=RESULT.npz: take this result of the scene called NAME; may be given more than once.
     """
+    from seatlook.comparison.compare import compare as run_compare
+    from seatlook.comparison.compare import variant_names
     from seatlook.pbr import offscreen_backend
-    from seatlook.report.comparison import compare as run_compare
-    from seatlook.report.comparison import variant_names
     from seatlook.report.comparison_page import write_comparison
 
     if len(scenes) < 2:

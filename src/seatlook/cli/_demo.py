@@ -13,7 +13,7 @@ from seatlook.cli._run import Out, Resume, Scored, Seed, evaluate_scene, load
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.design import DesignSurface, Flattened
+    from seatlook.flattening import DesignSurface, Flattened
 
 Shares = Annotated[tuple[str, ...], Parameter(negative=())]
 
@@ -122,12 +122,12 @@ def flatten(
         What all panels are made of, a supplied name or a file: they take the least strain energy of
         that fabric, by its curves. That of an isotropic sheet, if not given.
     """
-    from seatlook import design, files, io
-    from seatlook.study.strain_map import write_strain_maps
+    from seatlook import files, flattening, io
+    from seatlook.chain.strain_map import write_strain_maps
 
     form = _form(surface, unit, seam_lines)
     fabric = None if material is None else io.read_material(material).fabric
-    flat = design.flatten(
+    flat = flattening.flatten(
         form,
         fabrics={} if fabric is None else dict.fromkeys(form.panel_names, fabric),
         allowance=allowance_mm / 1e3,
@@ -151,15 +151,17 @@ def flatten(
 
 def _form(path: Path, unit: Literal["mm", "m"], seam_lines: Path | None) -> DesignSurface:
     """Read a design surface and cut it along the lines of a file, if there is one."""
-    from seatlook import design, io
+    from seatlook import flattening, io
 
     ungrouped = None if seam_lines is None else "PANEL"
-    form = design.DesignSurface(**io.read_surface(path, unit=unit, ungrouped=ungrouped)._asdict())
+    form = flattening.DesignSurface(
+        **io.read_surface(path, unit=unit, ungrouped=ungrouped)._asdict()
+    )
     if seam_lines is None:
         return form
     lines = io.read_curves(seam_lines)
     try:
-        return design.cut_along(form, lines)
+        return flattening.cut_along(form, lines)
     except InputError as error:
         raise InputError(
             problem if problem.file else replace(problem, file=seam_lines)
@@ -184,15 +186,15 @@ def write_demo(
     ``surface_size`` [m] is the edge length of design surface and foam, which stay the same
     however the cover is meshed.
     """
-    from seatlook import design, files, io
+    from seatlook import files, flattening, io, seats
 
     thickness = io.read_material(material).fabric.thickness
     io.read_material(insert)
     with progress() as show:
         show("flatten")
-        surface = design.demo_design(element_size=surface_size)
-        flat = design.flatten(surface, tension=tension, ease=ease, starve=starve)
-        foam = design.demo_foam_mesh(element_size=surface_size, cover_thickness=thickness)
+        surface = seats.demo_design(element_size=surface_size)
+        flat = flattening.flatten(surface, tension=tension, ease=ease, starve=starve)
+        foam = seats.demo_foam_mesh(element_size=surface_size, cover_thickness=thickness)
     _write_panels(surface, out / "design.obj")
     io.write_obj(foam.vertices, foam.faces, out / "foam.obj")
     io.write_curves(foam.curves, out / "wires.toml")

@@ -15,9 +15,9 @@ from seatlook.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from seatlook.assembly.seam_guess import Proposal
+    from seatlook.assembly.unfolding import Layout
     from seatlook.model import FloatArray, Foam, FoamMaterial, Pattern
-    from seatlook.study.sewing import Proposal
-    from seatlook.study.unfolding import Layout
 
 _FILES = ("scene.toml", "seams.toml", "curves.toml")
 _NEAREST_WIRE = 0.08  # m from a seam to the wire it may be hooked to
@@ -88,8 +88,8 @@ def init(
     """
     _check_files(pattern, foam, out, force=force)
     from seatlook import io
-    from seatlook.solver.contact import foam_wavelength
-    from seatlook.study.unfolding import lay_out
+    from seatlook.assembly.unfolding import lay_out
+    from seatlook.solver.foam.contact import foam_wavelength
 
     sources = Sources(pattern, foam, seams, wires)
     cloth, filling = io.read_material(material), io.read_foam_material(foam_material)
@@ -143,7 +143,7 @@ def _sewn(
     from types import MappingProxyType
 
     from seatlook import io
-    from seatlook.study.sewing import Proposal, propose_seams
+    from seatlook.assembly.seam_guess import Proposal, propose_seams
 
     if sources.seams is None:
         return propose_seams(io.read_panels(sources.pattern, size=size, units=units))

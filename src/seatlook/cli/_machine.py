@@ -130,7 +130,7 @@ def _cache(advice: list[str]) -> list[tuple[str, object]]:
 
 def _fields(advice: list[str]) -> list[tuple[str, object]]:
     """Where distance fields of foams are kept, how many, and whether they can be."""
-    from seatlook.solver.kept_fields import folder
+    from seatlook.solver.foam.field_cache import folder
 
     base = folder()
     kept = base is not None and _writable(base)

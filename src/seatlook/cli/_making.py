@@ -42,8 +42,8 @@ def timeline(
     seconds
         How long the animation lasts.
     """
+    from seatlook.chain.film import film
     from seatlook.pbr import offscreen_backend
-    from seatlook.study.film import film
 
     offscreen_backend()
     read = load(scene)
@@ -78,7 +78,7 @@ def hooks(
     Example: seatlook hooks seat.npz --csv hooks.csv
     """
     from seatlook import io
-    from seatlook.solver.hooks import RingPull, overpulled, ring_pulls
+    from seatlook.results.ring_pulls import RingPull, overpulled, ring_pulls
 
     solution = io.read_result(result)
     rings = ring_pulls(solution)

@@ -34,7 +34,7 @@ def precision(
         Relative error of the zone means of W2.
     """
     from seatlook import io
-    from seatlook.study.precision import solve_to
+    from seatlook.chain.precision import solve_to
 
     if out is not None and out.suffix != ".npz":
         raise InputError.single("--out", got=out.name, expected="a name that ends in .npz")

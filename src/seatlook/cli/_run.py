@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from seatlook.assembly.ease import SeamEase
-    from seatlook.evaluation import Evaluation
+    from seatlook.chain.evaluation import Evaluation
     from seatlook.model import Camera, Scene, Solution
     from seatlook.report import Check
     from seatlook.wrinkle import ZoneRow
@@ -68,7 +68,7 @@ def check(
     """
     from seatlook.assembly import assemble
     from seatlook.assembly.ease import seam_ease
-    from seatlook.solver.contact import foam_wavelength
+    from seatlook.solver.foam.contact import foam_wavelength
 
     read = load(scene, seed, element_size_mm, changes)
     cover = assemble(read)
@@ -145,7 +145,7 @@ def evaluate(
 
 def _list_cells(scene: Scene, out: Path, *, json: bool) -> int:
     """Print what evaluating a scene would draw; the same names as when it does."""
-    from seatlook.evaluation import picture_path
+    from seatlook.chain.evaluation import picture_path
     from seatlook.pbr import ev100
 
     table(
@@ -170,10 +170,10 @@ def evaluate_scene(
     single_file: bool = False,
 ) -> int:
     """Evaluate a scene, print its zones and return the exit code."""
-    from seatlook.evaluation import evaluate as run_chain
+    from seatlook.chain.evaluation import evaluate as run_chain
     from seatlook.model.scene import SCORE_MEASURES
-    from seatlook.report.gather import write_report
-    from seatlook.report.score import visibility
+    from seatlook.report.page.gather import write_report
+    from seatlook.report.sections.score import visibility
 
     score = score or any(limit.measure in SCORE_MEASURES for limit in scene.limits)
     with progress() as show:
@@ -231,7 +231,7 @@ def render(
     radiance
         Keep what is seen, in cd/m2, beside each picture; exr needs the extra "exr".
     """
-    from seatlook.evaluation import draw_maps, draw_pictures, wrinkle_map
+    from seatlook.chain.evaluation import draw_maps, draw_pictures, wrinkle_map
     from seatlook.pbr import offscreen_backend
 
     offscreen_backend()
@@ -254,7 +254,7 @@ def load(
 ) -> Scene:
     """Read a scene, with what the command line overrides and poses for panels that have none."""
     from seatlook import io
-    from seatlook.study.placing import placed
+    from seatlook.assembly.placing import placed
 
     if path.suffix.lower() in _NO_SCENES:
         raise InputError.single(

@@ -13,8 +13,8 @@ from seatlook.errors import InputError
 
 if TYPE_CHECKING:
     from seatlook.model import Camera, Scene, Solution
-    from seatlook.study.light_search import WorstLight
-    from seatlook.study.scoring import SceneScore
+    from seatlook.visibility.light_search import WorstLight
+    from seatlook.visibility.scoring import SceneScore
 
 # Of the pictures of a search, against those of the score: a quarter of the pixels will do.
 _SEARCH_SCALE = 2
@@ -65,10 +65,10 @@ def score(
         Find the sun direction and the bulb position that show the wrinkles of each texture most,
         about a minute for each; needs --out for the charts.
     """
-    from seatlook.evaluation import wrinkle_map
+    from seatlook.chain.evaluation import wrinkle_map
     from seatlook.pbr import offscreen_backend
-    from seatlook.report.score import score_checks
-    from seatlook.study.scoring import score_scene
+    from seatlook.report.sections.score import score_checks
+    from seatlook.visibility.scoring import score_scene
 
     if search_light and out is None:
         raise InputError.single("--search-light", got="no --out", expected="a folder for charts")
@@ -112,9 +112,9 @@ def _searches(
     """Search the worst sun and the worst bulb of every texture, and draw their charts."""
     from dataclasses import replace
 
-    from seatlook.report.light_chart import write_light_chart
-    from seatlook.study.light_search import bulb_rig, search_light, sun_rig
-    from seatlook.study.view import View
+    from seatlook.report.page.light_chart import write_light_chart
+    from seatlook.visibility.light_search import bulb_rig, search_light, sun_rig
+    from seatlook.visibility.view import View
 
     width, height = camera.size
     small = replace(camera, size=(width // _SEARCH_SCALE, height // _SEARCH_SCALE))
@@ -141,7 +141,7 @@ def _write(found: SceneScore, searches: dict[str, dict[str, WorstLight]], out: P
     from json import dumps
 
     from seatlook import files
-    from seatlook.report.score import draw_maps, score_values
+    from seatlook.report.sections.score import draw_maps, score_values
 
     draw_maps(found, found.grid.sights, out)
     files.write_text(out / "score.json", dumps(score_values(found, searches), indent=1) + "\n")
@@ -149,7 +149,7 @@ def _write(found: SceneScore, searches: dict[str, dict[str, WorstLight]], out: P
 
 
 def _print(found: SceneScore, searches: dict[str, dict[str, WorstLight]], *, json: bool) -> None:
-    from seatlook.report.score import (
+    from seatlook.report.sections.score import (
         cause_table,
         grid_table,
         score_values,

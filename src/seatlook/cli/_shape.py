@@ -35,9 +35,9 @@ def shape(
     view
         Camera of the scene for the map. The first if not given.
     """
-    from seatlook.evaluation import draw_distance, seam_line_rows, shape_rows, write_shape
-    from seatlook.solver.deviation import deviation, seam_lines
-    from seatlook.solver.standoff import zone_standoff
+    from seatlook.chain.evaluation import draw_distance, seam_line_rows, shape_rows, write_shape
+    from seatlook.results.deviation import deviation, seam_lines
+    from seatlook.results.gap import zone_standoff
 
     read = load(scene)
     if read.design is None:

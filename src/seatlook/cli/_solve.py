@@ -76,7 +76,7 @@ def _in_stages(
     cover: Cover, folder: Path, again_from: str | None, resume: bool, show: Say
 ) -> Solution:
     """Solve and say on stderr with which stage it begins and where the stages are."""
-    from seatlook.study.timeline import solve_in_stages
+    from seatlook.chain.timeline import solve_in_stages
 
     seen: list[str] = []
 

@@ -15,7 +15,7 @@ from seatlook.cli._run import DryRun, Out
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.study.cell import Cell
+    from seatlook.sweeps.cell import Cell
 
 
 def sweep(
@@ -49,8 +49,8 @@ def sweep(
         seatlook[cluster].
     """
     from seatlook.io.sweep import read_sweep
-    from seatlook.study import cell as study
-    from seatlook.study import sweep as runs
+    from seatlook.sweeps import cell as study
+    from seatlook.sweeps import run as runs
 
     planned = study.plan(read_sweep(spec))
     folder = out / "cells"
@@ -92,7 +92,7 @@ def _watch(run: Iterator[tuple[Cell, str]], count: int) -> list[tuple[Cell, str]
 
 def _summarise(cells: Sequence[Cell], out: Path, *, json: bool) -> None:
     from seatlook.io import write_table
-    from seatlook.study import summary
+    from seatlook.sweeps import summary
 
     found = summary.rows(cells, out / "cells")
     heads = list(dict.fromkeys(key for row in found for key in row))
@@ -117,8 +117,8 @@ def _irregular(
 ) -> list[dict[str, str | int | float]]:
     """Leave the probability of wrinkles and its causes; return its zones, and say what counts."""
     from seatlook.io import write_table
-    from seatlook.study import summary
-    from seatlook.study.probability import chance, draw_chance
+    from seatlook.sweeps import summary
+    from seatlook.sweeps.probability import chance, draw_chance
 
     try:
         found = chance(cells, out / "cells")

@@ -17,7 +17,7 @@ from seatlook.errors import InputError
 if TYPE_CHECKING:
     from seatlook.model import FloatArray, Scene, ShellResult, Solution, WrinkleMap
     from seatlook.model.scene import CurvatureMode
-    from seatlook.study.shells import JudgedStates
+    from seatlook.shells.states import JudgedStates
     from seatlook.wrinkle.equations import StrainMeasure
 
 Files = Annotated[tuple[Path, ...], Parameter(negative=())]
@@ -183,8 +183,8 @@ def _judge_result(
     file: Path, scene: Scene | None, against: Path | None, question: _Question
 ) -> None:
     from seatlook import io
-    from seatlook.study import result_maps as study
-    from seatlook.study.findings import find, worst_row
+    from seatlook.chain import result_maps as study
+    from seatlook.chain.findings import find, worst_row
 
     asked = study.Question(
         mode=question.mode,
@@ -221,9 +221,9 @@ def _judge_result(
 
 
 def _judge_shells(file: Path, options: ShellOptions, question: _Question) -> None:
-    from seatlook.io.shells import read_shells
-    from seatlook.study.shells import judged_states
-    from seatlook.wrinkle.shells import DEFAULT_THRESHOLD
+    from seatlook.io.lsdyna.shells import read_shells
+    from seatlook.shells.states import judged_states
+    from seatlook.shells.strains import DEFAULT_THRESHOLD
 
     result = read_shells(
         file,
@@ -284,9 +284,9 @@ def _draw_shells(
 ) -> None:
     """Draw the states, each into a folder of its own; export the last of them."""
     from seatlook import io
+    from seatlook.chain.shell_maps import draw_state, on_faces
     from seatlook.report.shells import write_shell_page
-    from seatlook.study.shell_cover import shell_cover
-    from seatlook.study.shell_maps import draw_state, on_faces
+    from seatlook.shells.cover import shell_cover
 
     look = io.read_material(material)
     for number, (state, wrinkles) in judged.states.items():
@@ -327,7 +327,7 @@ def _export(solution: Solution, indices: WrinkleMap, paths: tuple[Path, ...]) ->
     for path in paths:
         # A viewer knows no grain by formula.
         drawn = path.suffix.lower() == ".glb"
-        io.export(pbr.bake_grain(solution) if drawn else solution, indices, path)
+        io.export_cover(pbr.bake_grain(solution) if drawn else solution, indices, path)
 
 
 def _print_rows(rows: Sequence[Mapping[str, Any]]) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from seatlook.io._schema import Array, shown
-from seatlook.io._toml import Document, Key
+from seatlook.io.schema import Array, shown
+from seatlook.io.toml import Document, Key
 from seatlook.model.colour import srgb_decode
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.files import write_text
-from seatlook.io._schema import MM, Array, Kind, Named, Table, read_table
-from seatlook.io._toml import quoted, read_document
+from seatlook.io.schema import MM, Array, Kind, Named, Table, read_table
+from seatlook.io.toml import quoted, read_document
 from seatlook.model import FloatArray
 
 _KEYS: dict[str, Kind] = {

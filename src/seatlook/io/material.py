@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from seatlook.errors import InputError, did_you_mean
-from seatlook.io._schema import MM, Array, Kind, Number, Table, Text, read_table, shown
-from seatlook.io._toml import Document, Key, read_document
 from seatlook.io.colour import Colour
+from seatlook.io.schema import MM, Array, Kind, Number, Table, Text, read_table, shown
 from seatlook.io.texture_maps import read_texture_maps
+from seatlook.io.toml import Document, Key, read_document
 from seatlook.model import Appearance, Curve, Fabric, FoamMaterial, Material, TextureMaps
 
 

@@ -11,10 +11,10 @@ import numpy as np
 import trimesh
 
 from seatlook.errors import InputError
-from seatlook.io._schema import shown
-from seatlook.io._toml import read_file
 from seatlook.io.curves import read_curves
+from seatlook.io.schema import shown
 from seatlook.io.surface import METRES, Unit, check_size
+from seatlook.io.toml import read_file
 from seatlook.mesh import face_vectors
 from seatlook.model import FloatArray, Foam, FoamMaterial, IntArray
 

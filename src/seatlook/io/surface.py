@@ -10,8 +10,8 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.files import write_text
-from seatlook.io._schema import shown
-from seatlook.io._toml import read_file
+from seatlook.io.schema import shown
+from seatlook.io.toml import read_file
 from seatlook.model import FloatArray, IntArray
 
 Unit = Literal["mm", "m"]

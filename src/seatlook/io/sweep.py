@@ -8,8 +8,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal
 
-from seatlook.io._schema import Integer, Kind, Number, Rows, Table, Text, Texts, read_table, shown
-from seatlook.io._toml import Document, quoted, read_document
+from seatlook.io.schema import Integer, Kind, Number, Rows, Table, Text, Texts, read_table, shown
+from seatlook.io.toml import Document, quoted, read_document
 
 # What may be irregular, with its unit; ``of`` names a seam, a curve of the foam, or nothing.
 KINDS = ("seam_offset_mm", "ease_percent", "hook_depth_mm", "foam_mm")

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError, Problem
 from seatlook.exr import read_exr
-from seatlook.io._toml import read_file
+from seatlook.io.toml import read_file
 from seatlook.model import TextureMaps
 from seatlook.model.colour import srgb_decode, srgb_encode
 from seatlook.model.texture import Pixels

@@ -7,9 +7,9 @@ from seatlook.mesh.outline import (
     QUANTILE_ANGLE_DEG,
     triangulate,
 )
+from seatlook.mesh.polyline import arc_length, resample
 from seatlook.mesh.surface import (
     angles,
-    arc_length,
     boundary_loops,
     boundary_sides,
     edge_lengths,
@@ -18,7 +18,6 @@ from seatlook.mesh.surface import (
     face_normals,
     face_vectors,
     hexagonal_bias,
-    resample,
     vertex_normals,
 )
 

@@ -1,4 +1,4 @@
-"""Topology, normals, angles and lengths of triangle meshes and polylines."""
+"""Topology, normals, angles and lengths of triangle meshes."""
 
 from __future__ import annotations
 
@@ -137,30 +137,3 @@ def hexagonal_bias(points: FloatArray, pairs: IntArray) -> float:
     along = points[pairs[:, 1]] - points[pairs[:, 0]]
     theta = np.arctan2(along[:, 1], along[:, 0])
     return float(np.abs(np.exp(6j * theta).mean()))
-
-
-def arc_length(polyline: FloatArray) -> FloatArray:
-    """Return the length run through (k,) [m] at each point of an open polyline (k, d)."""
-    steps = np.linalg.norm(np.diff(polyline, axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def resample(polyline: FloatArray, spacing: float) -> FloatArray:
-    """Return points of equal arc length on an open polyline (k, d), both ends kept.
-
-    The step is the length divided by the nearest whole number of ``spacing`` (at least one).
-
-    Examples
-    --------
-    >>> resample(np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]]), 0.9)[:, 0]
-    array([0., 1., 2., 3., 3.])
-    """
-    s = arc_length(polyline)
-    if not (spacing > 0 and s[-1] > 0):
-        raise InputError.single(
-            "resample", got=f"length {s[-1]:g}, spacing {spacing:g}", expected="numbers above 0"
-        )
-    at = np.linspace(0.0, s[-1], max(1, round(s[-1] / spacing)) + 1)
-    points = np.column_stack([np.interp(at, s, column) for column in polyline.T])
-    points[[0, -1]] = polyline[[0, -1]]  # bit for bit, so that neighbours share their corners
-    return points

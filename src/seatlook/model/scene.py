@@ -109,6 +109,19 @@ class Limit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """One limit of ``[accept]`` and what was found."""
+
+    limit: Limit
+    value: float
+
+    @property
+    def kept(self) -> bool:
+        """Whether the value is at most the limit's maximum."""
+        return self.value <= self.limit.maximum
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
     """The shape that the finished cover is to have.
 

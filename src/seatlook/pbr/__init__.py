@@ -26,16 +26,16 @@ __all__ = [
 _PUBLIC: dict[str, str] = {
     "Image": "seatlook.pbr.picture",
     "Picture": "seatlook.pbr.picture",
-    "Studio": "seatlook.pbr.studio",
-    "bake_grain": "seatlook.pbr.texture",
-    "ev100": "seatlook.pbr.exposure",
-    "illuminance": "seatlook.pbr.rig",
-    "lux_at_seat": "seatlook.pbr.rig",
+    "Studio": "seatlook.pbr.shading.studio",
+    "bake_grain": "seatlook.pbr.reflectance.relief",
+    "ev100": "seatlook.pbr.light.exposure",
+    "illuminance": "seatlook.pbr.light.rig",
+    "lux_at_seat": "seatlook.pbr.light.rig",
     "offscreen_backend": "seatlook.pbr.backend",
-    "render": "seatlook.pbr.studio",
-    "render_checker": "seatlook.pbr.checker",
-    "render_map": "seatlook.pbr.maps",
-    "sketch": "seatlook.pbr.clay",
+    "render": "seatlook.pbr.shading.studio",
+    "render_checker": "seatlook.pbr.maps.checker",
+    "render_map": "seatlook.pbr.maps.face_map",
+    "sketch": "seatlook.pbr.maps.preview",
 }
 
 

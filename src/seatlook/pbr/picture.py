@@ -15,7 +15,7 @@ from seatlook.errors import InputError
 from seatlook.exr import write_exr
 from seatlook.files import write_bytes
 from seatlook.model import Camera, FloatArray
-from seatlook.pbr.exposure import Radiance, to_display
+from seatlook.pbr.light.exposure import Radiance, to_display
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

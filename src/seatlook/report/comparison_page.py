@@ -8,17 +8,18 @@ from pathlib import Path
 from types import MappingProxyType
 
 from seatlook import __version__, files
-from seatlook.evaluation import MAPS, Progress, label, picture_path
-from seatlook.report.chart import number
-from seatlook.report.comparison import Comparison
-from seatlook.report.comparison_score import VariantScores
-from seatlook.report.data import Check, MapView, PageData, ScoreSection, Spot, Table
-from seatlook.report.gather import rig_head
-from seatlook.report.in_short import above_one
-from seatlook.report.page import write_page
-from seatlook.report.parameters import parameter_tables, parameter_toml
-from seatlook.report.wrinkles import WrinkleSection, section_of
-from seatlook.study.findings import find
+from seatlook.chain.evaluation import MAPS, label, picture_path
+from seatlook.chain.findings import find
+from seatlook.comparison.compare import Comparison
+from seatlook.comparison.visibility import VariantScores
+from seatlook.model.progress import Progress
+from seatlook.model.table import Table, number
+from seatlook.report.page.data import Check, MapView, PageData, ScoreSection, Spot
+from seatlook.report.page.gather import rig_head
+from seatlook.report.page.in_short import above_one
+from seatlook.report.page.parameters import parameter_tables, parameter_toml
+from seatlook.report.page.write import write_page
+from seatlook.report.sections.wrinkles import WrinkleSection, section_of
 
 _TABLES = {
     "W2 mean": "w2_mean",

@@ -8,12 +8,13 @@ from types import MappingProxyType
 from typing import Any
 
 from seatlook import __version__
-from seatlook.evaluation import MAPS, label
-from seatlook.report.data import MapView, PageData, Table
-from seatlook.report.gather import rig_head
-from seatlook.report.page import write_page
-from seatlook.report.wrinkles import distortion_views, section_of
-from seatlook.study.shell_maps import PICTURE, DrawnState
+from seatlook.chain.evaluation import MAPS, label
+from seatlook.chain.shell_maps import PICTURE, DrawnState
+from seatlook.model.table import Table
+from seatlook.report.page.data import MapView, PageData
+from seatlook.report.page.gather import rig_head
+from seatlook.report.page.write import write_page
+from seatlook.report.sections.wrinkles import distortion_views, section_of
 
 # key of a part's figures -> head of its column
 _COLUMNS: MappingProxyType[str, str] = MappingProxyType(
@@ -43,7 +44,7 @@ def write_shell_page(
 
     Parameters
     ----------
-    figures : of the state, from ``seatlook.study.shells.state_figures``
+    figures : of the state, from ``seatlook.shells.states.state_figures``
     asked : what was asked for -> its value, such as curvature mode and threshold
     notes : what the reader of the file said
     """

@@ -11,13 +11,13 @@ from scipy.sparse.linalg import splu
 
 from seatlook.errors import InputError, SolverError
 from seatlook.model import Fabric, FloatArray, IntArray
-from seatlook.solver.elastic import ElasticSheet
+from seatlook.solver.element.elastic import ElasticSheet
+from seatlook.solver.element.loads import DeadLoad, Pressure
 from seatlook.solver.energy import Energy
-from seatlook.solver.explicit import Explicit, UnstableStepError
-from seatlook.solver.loads import DeadLoad, Pressure
-from seatlook.solver.method import MethodName, method_of
-from seatlook.solver.newton import Equilibrium, Potential
-from seatlook.solver.statics import equilibrium
+from seatlook.solver.methods.choice import MethodName, method_of
+from seatlook.solver.methods.explicit import Explicit, UnstableStepError
+from seatlook.solver.methods.newton import Equilibrium, Potential
+from seatlook.solver.process.statics import equilibrium
 
 
 @dataclass(frozen=True, slots=True)

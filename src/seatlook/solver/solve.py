@@ -12,11 +12,11 @@ import numpy as np
 from seatlook import __version__
 from seatlook.errors import ConvergenceError, InputError
 from seatlook.model import Cover, FloatArray, Solution, stage_units
-from seatlook.solver.explicit import Explicit
-from seatlook.solver.method import MethodName, method_of
-from seatlook.solver.process import Process, Record
-from seatlook.solver.stages import Step, check_stages, schedule
-from seatlook.solver.verdict import figures, reasons, unrest
+from seatlook.solver.methods.choice import MethodName, method_of
+from seatlook.solver.methods.explicit import Explicit
+from seatlook.solver.process.process import Process, Record
+from seatlook.solver.process.stages import Step, check_stages, schedule
+from seatlook.solver.process.verdict import figures, reasons, unrest
 
 _REST = "at rest"
 _ROUNDS = 40  # of settling, each with the inertia of a time step twice as long

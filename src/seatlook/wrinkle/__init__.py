@@ -1,5 +1,13 @@
 """How much a cover wrinkles, where and why."""
 
+from seatlook.mesh.statistics import quantile
+from seatlook.wrinkle.distortion import (
+    DISTORTIONS,
+    Distortion,
+    DistortionRow,
+    distortion,
+    distortion_table,
+)
 from seatlook.wrinkle.equations import (
     STRAIN_MEASURES,
     compression_wrinkle,
@@ -35,17 +43,8 @@ from seatlook.wrinkle.recovery import (
     shape_curvature,
 )
 from seatlook.wrinkle.section import Section, section
-from seatlook.wrinkle.shells import ShellWrinkles, shell_indices
-from seatlook.wrinkle.texture import (
-    DISTORTIONS,
-    Distortion,
-    DistortionRow,
-    distortion,
-    distortion_table,
-)
 from seatlook.wrinkle.worst import Wrinkle, beside_sections, section_across, worst_wrinkles
 from seatlook.wrinkle.zone import ZoneRow, map_top, zone_table
-from seatlook.zones import quantile
 
 __all__ = [
     "DEAD_BAND",
@@ -58,7 +57,6 @@ __all__ = [
     "Distortion",
     "DistortionRow",
     "Section",
-    "ShellWrinkles",
     "Surface",
     "Wrinkle",
     "ZoneRow",
@@ -78,7 +76,6 @@ __all__ = [
     "section",
     "section_across",
     "shape_curvature",
-    "shell_indices",
     "signed_ratio",
     "stretch_ratio",
     "stretch_wrinkle",

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.kinematics import logarithmic_strain, principal_values
+from seatlook.mesh.kinematics import logarithmic_strain, principal_values
 from seatlook.model import FloatArray, Solution, WrinkleMap
 from seatlook.model.scene import CurvatureMode
 

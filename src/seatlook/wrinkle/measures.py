@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.kinematics import principal_values
+from seatlook.mesh.kinematics import principal_values
 from seatlook.model import Cover, FloatArray, IntArray, Solution, WrinkleMap
 from seatlook.model.scene import CurvatureMode
 from seatlook.wrinkle.equations import relative_curvature, wrinkle_index

@@ -10,8 +10,8 @@ from scipy.sparse import coo_array, csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from seatlook.errors import InputError
-from seatlook.kinematics import deformation_gradient
 from seatlook.mesh import angles, boundary_sides, face_areas
+from seatlook.mesh.kinematics import deformation_gradient
 from seatlook.model import Cover, FloatArray, IntArray
 from seatlook.wrinkle.jet import vertex_curvature
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from seatlook.mesh.statistics import quantile
 from seatlook.model import FloatArray, Solution, WrinkleMap
 from seatlook.wrinkle.recovery import recovery_error
-from seatlook.zones import quantile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

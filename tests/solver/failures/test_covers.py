@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from covers import cover, flat_foam, row, sheet, vertices_as_points
 from seatlook import model
 from seatlook.solver import solve
+from support.covers import cover, flat_foam, row, sheet, vertices_as_points
 
 pytestmark = pytest.mark.failure
 

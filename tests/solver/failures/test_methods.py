@@ -3,45 +3,18 @@
 import numpy as np
 import pytest
 
-import fabrics
-import meshes
-from counter_examples import position_based
-from covers import cover, flat_foam, sheet
 from seatlook import model
 from seatlook.solver import Explicit, solve, solve_sheet
-from seatlook.solver.elastic import ElasticSheet
-from seatlook.solver.explicit import UnstableStepError, stable_step
-from seatlook.solver.newton import Potential, newton
+from seatlook.solver.element.elastic import ElasticSheet
+from seatlook.solver.methods.explicit import UnstableStepError
+from seatlook.solver.methods.newton import Potential, newton
 from seatlook.solver.sheet import SheetError
+from support import fabrics, meshes
+from support.covers import cover, flat_foam, sheet
+from support.reference.counter_examples import position_based
+from support.reference.hanging import explicit_limit, hanging
 
 pytestmark = pytest.mark.failure
-
-
-def hanging(kind="uns", *, edges=8, thickness=0.02, stiffness_ratio=1.0, stretch=None, **options):
-    """Strip of length 1 and B = 1 that hangs from a clamp with Gamma = 1."""
-    X, T = meshes.rectangle(kind, 1.0, 0.25, 1.0 / edges)
-    stretch = 12.0 / thickness**2 if stretch is None else stretch
-    fabric = model.Fabric(
-        thickness=thickness,
-        density=1.0,
-        warp=model.Curve.linear(stretch * stiffness_ratio),
-        weft=model.Curve.linear(stretch),
-        shear=model.Curve.linear(0.5 * stretch),
-        bending_warp=1.0,
-        bending_weft=1.0,
-        bending_twist=0.5,
-    )
-    clamped = X[:, 0] < 1e-9
-    return X, solve_sheet(X, T, fabric, clamped=clamped, gravity=(0, 0, -1.0), **options)
-
-
-def explicit_limit(**options):
-    X, solved = hanging(method="newton", **options)
-    free = np.flatnonzero(np.repeat(X[:, 0] > 1e-9, 3))
-    hessian = sum(e.hessian(solved.positions, definite=True) for e in solved.sheet.energies)
-    return stable_step(
-        hessian.tocsr()[free][:, free].tocsc(), np.repeat(solved.sheet.mass, 3)[free]
-    )
 
 
 @pytest.mark.parametrize("thickness", [1e-1, 1e-3])

@@ -1,0 +1,1 @@
+"""The whole chain: scene, cover, solution, assessment, pictures."""

@@ -1,0 +1,1 @@
+"""Several variants of one cover side by side."""

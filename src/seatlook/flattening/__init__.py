@@ -1,0 +1,14 @@
+"""From a design surface to flat patterns that fit it."""
+
+from seatlook.flattening.cutting import cut_along
+from seatlook.flattening.flatten import Flattened, PanelStrain, SeamLengths, flatten
+from seatlook.flattening.surface import DesignSurface
+
+__all__ = [
+    "DesignSurface",
+    "Flattened",
+    "PanelStrain",
+    "SeamLengths",
+    "cut_along",
+    "flatten",
+]

@@ -1,0 +1,271 @@
+"""A design surface made into a flat pattern that fits it, with the strain that is left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from seatlook import mesh
+from seatlook.errors import InputError, Problem, SeatlookError, did_you_mean
+from seatlook.flattening.fabric_sheet import fabric_energy
+from seatlook.flattening.lengths import agreed_ratios, relaxed
+from seatlook.flattening.pattern import pair, sewing_pattern
+from seatlook.flattening.placement import place
+from seatlook.flattening.relax import flatten_patch, strains_by_grain, stretches
+from seatlook.flattening.surface import FREE, DesignSurface, Patch, Side, sides
+from seatlook.model import Fabric, FloatArray, Pattern, Pose
+
+SEAM_TOLERANCE = 5e-5  # [m] by which the two lines of a seam may differ in length
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanelStrain:
+    """Strain a flat panel takes when laid onto its patch, area-weighted, from both principals.
+
+    Parameters
+    ----------
+    energy : float [J]     stored by this in the fabric given, compression counting as tension
+    """
+
+    panel: str
+    area: float
+    mean: float
+    rms: float
+    smallest: float
+    largest: float
+    energy: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeamLengths:
+    """Lengths [m] of a seam's two sewing lines and of the seam line on the design surface."""
+
+    seam: str
+    a: float
+    b: float
+    design: float
+
+    @property
+    def difference(self) -> float:
+        """How much longer side a is than side b [m]."""
+        return self.a - self.b
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flattened:
+    """The pattern of a design surface.
+
+    Parameters
+    ----------
+    pattern : Pattern
+    placement : panel name -> Pose          near its patch, clear of the foam
+    flat : panel name -> (n, 2) [m]         pattern position of each vertex of the panel's patch
+    strain : (m, 2) float64 [1]             per face of the surface, small principal first;
+                                            positive where the panel is stretched by the form
+    grain_strain : (m, 3) float64 [1]       Green strain along warp, weft, and the angle between
+    panels : tuple of PanelStrain
+    seams : tuple of SeamLengths
+    """
+
+    pattern: Pattern
+    placement: MappingProxyType[str, Pose]
+    flat: MappingProxyType[str, FloatArray]
+    strain: FloatArray
+    grain_strain: FloatArray
+    panels: tuple[PanelStrain, ...]
+    seams: tuple[SeamLengths, ...]
+
+
+def flatten(
+    surface: DesignSurface,
+    *,
+    allowance: float = 0.010,
+    tension: float = 0.0,
+    ease: Mapping[str, float] = MappingProxyType({}),
+    starve: Mapping[str, float] = MappingProxyType({}),
+    seam_strain: float = 0.015,
+    fabrics: Mapping[str, Fabric] = MappingProxyType({}),
+) -> Flattened:
+    """Flatten every panel of a design surface and make a sewable pattern of them.
+
+    Each panel first takes the shape of least strain energy by itself; then the two lines of a
+    seam agree on the mean of their lengths, segment by segment, and the panels relax again with
+    these lengths held. So both lines of a seam are equally long, piece by piece.
+
+    Parameters
+    ----------
+    surface : DesignSurface
+    allowance : float [m]         seam allowance and hem round every panel
+    tension : float               all panels are drawn smaller by this fraction
+    ease : edge or seam name -> fraction
+        This sewing line becomes longer than its partner by the fraction; the panel is stretched
+        along it, less and less over 150 mm or its width. A seam's name stands for the edge of its
+        first panel.
+    starve : panel name -> fraction
+        The panel becomes narrower across its grain.
+    seam_strain : float
+        Largest share of the strain that a seam line may take.
+    fabrics : panel name -> Fabric
+        What the panel is made of: it takes the least strain energy of that, by its curves along
+        warp and weft and in shear. A panel without takes that of an isotropic sheet.
+
+    Returns
+    -------
+    Flattened
+
+    Raises
+    ------
+    InputError
+        A panel is not a disk; ``ease`` or ``starve`` name nothing or ask too much.
+    SeatlookError
+        A panel cannot be flattened without folding, or the lines of a seam differ by more than
+        ``SEAM_TOLERANCE`` though none of them is eased.
+    """
+    patches = surface.patches()
+    borders = sides(patches)
+    seams = pair(borders, surface.seam_lines)
+    first = {seam.name: seam.a for seam in seams}
+    ease = {first.get(name, name): value for name, value in ease.items()}
+    _check("ease", ease, [s.name for s in borders if s.neighbour != FREE])
+    _check("starve", starve, surface.panel_names)
+    _check("tension", {"": tension}, [""])
+
+    _check("fabrics", dict.fromkeys(fabrics, 0.0), surface.panel_names)
+
+    alone = {p.name: _alone(p, fabrics.get(p.name)) for p in patches}
+    ratio = agreed_ratios(patches, borders, alone, limit=seam_strain)
+    flat = {}
+    for patch in patches:
+        own = [s for s in borders if s.panel == patch.name and s.neighbour != FREE]
+        fabric = fabrics.get(patch.name)
+        x = relaxed(patch, own, ratio, alone[patch.name], ease, fabric=fabric)
+        # A panel of a fabric has kept the direction in which its grain was laid.
+        x = (_grain_up(patch, x) if fabric is None else x) * (1 - tension)
+        flat[patch.name] = x * [1 - starve.get(patch.name, 0.0), 1.0]
+    found = _report(surface, patches, borders, _side_by_side(flat), allowance, fabrics)
+    _check_seams(found, spoiled={*ease, *starve})
+    return found
+
+
+def _alone(patch: Patch, fabric: Fabric | None) -> FloatArray:
+    """Flatten a panel by itself; of a fabric with its grain laid."""
+    x = flatten_patch(patch.vertices, patch.faces)
+    if fabric is None:
+        return x
+    return flatten_patch(patch.vertices, patch.faces, start=_grain_up(patch, x), fabric=fabric)
+
+
+def _report(
+    surface: DesignSurface,
+    patches: tuple[Patch, ...],
+    borders: tuple[Side, ...],
+    flat: dict[str, FloatArray],
+    allowance: float,
+    fabrics: Mapping[str, Fabric],
+) -> Flattened:
+    """Collect pattern, poses and figures."""
+    strain = np.empty((len(surface.faces), 2))
+    by_grain = np.empty((len(surface.faces), 3))
+    panels = []
+    for i, patch in enumerate(patches):
+        mine, form = surface.panel == i, (patch.vertices, patch.faces, flat[patch.name])
+        strain[mine] = stretches(*form) - 1
+        by_grain[mine] = strains_by_grain(*form)
+        fabric = fabrics.get(patch.name)
+        stored = None if fabric is None else fabric_energy(by_grain[mine], fabric)
+        panels.append(_panel_strain(patch, strain[mine], stored))
+    pattern = sewing_pattern(patches, borders, flat, allowance, seam_lines=surface.seam_lines)
+    design = {s.name: float(mesh.arc_length(surface.vertices[s.vertices])[-1]) for s in borders}
+    return Flattened(
+        pattern=pattern,
+        placement=MappingProxyType({p.name: place(p, flat[p.name]) for p in patches}),
+        flat=MappingProxyType(flat),
+        strain=strain,
+        grain_strain=by_grain,
+        panels=tuple(panels),
+        seams=tuple(
+            SeamLengths(
+                seam=seam.name,
+                a=pattern.edge_length(seam.a),
+                b=pattern.edge_length(seam.b[0]),
+                design=design[seam.a],
+            )
+            for seam in pattern.seams
+        ),
+    )
+
+
+def _panel_strain(patch: Patch, strain: FloatArray, stored: FloatArray | None) -> PanelStrain:
+    area = mesh.face_areas(patch.vertices, patch.faces)
+    share = area[:, None] / (2 * area.sum())
+    return PanelStrain(
+        panel=patch.name,
+        area=float(area.sum()),
+        mean=float((share * strain).sum()),
+        rms=float(np.sqrt((share * strain**2).sum())),
+        smallest=float(strain.min()),
+        largest=float(strain.max()),
+        energy=None if stored is None else float(area @ stored),
+    )
+
+
+def _check_seams(found: Flattened, *, spoiled: set[str]) -> None:
+    """Refuse lines of a seam that are not equally long though nobody asked for it."""
+    for seam, sewn in zip(found.seams, found.pattern.seams, strict=True):
+        edges = {sewn.a, *sewn.b}
+        if spoiled & (edges | {found.pattern.edges[name].panel for name in edges}):
+            continue
+        if abs(seam.difference) > SEAM_TOLERANCE:
+            raise SeatlookError(
+                f"seam {seam.seam}: its lines are {1e3 * seam.a:.3f} and {1e3 * seam.b:.3f} mm "
+                f"long, more than {1e3 * SEAM_TOLERANCE:g} mm apart"
+            )
+
+
+def _check(key: str, wanted: Mapping[str, float], known: Sequence[str]) -> None:
+    """Refuse names that do not exist and fractions that no pattern maker would use."""
+    problems = [
+        Problem(
+            key=key,
+            got=repr(name),
+            expected=f"one of {', '.join(known)}",
+            hint=did_you_mean(name, known),
+        )
+        for name in wanted
+        if name not in known
+    ]
+    problems += [
+        Problem(key=f"{key} {name}".strip(), got=f"{value:g}", expected="-0.2 to 0.2")
+        for name, value in wanted.items()
+        if not abs(value) <= 0.2
+    ]
+    if problems:
+        raise InputError(problems)
+
+
+def _grain_up(patch: Patch, flat: FloatArray) -> FloatArray:
+    """Turn a flat patch so that the way from front to rear runs along +y.
+
+    Where the panel faces front or rear, upward takes the place of rearward.
+    """
+    normal = mesh.face_vectors(patch.vertices, patch.faces)
+    area = np.linalg.norm(normal, axis=1)
+    away = np.abs(normal[:, 1]).sum() / area.sum()
+    axis = patch.vertices[:, 1] if away < np.sqrt(0.5) else patch.vertices[:, 2]
+    # Slope of the world axis over the flat panel, in the least-squares sense.
+    centred = flat - flat.mean(axis=0)
+    slope, *_ = np.linalg.lstsq(centred, axis - axis.mean())
+    c, s = slope[::-1] / np.linalg.norm(slope)
+    return np.asarray(flat @ np.array([[c, -s], [s, c]]).T)
+
+
+def _side_by_side(flat: Mapping[str, FloatArray], gap: float = 0.05) -> dict[str, FloatArray]:
+    """Lay the panels out in a row above the first axis."""
+    placed, right = {}, 0.0
+    for name, x in flat.items():
+        placed[name] = np.ascontiguousarray(x - x.min(axis=0) + [right, 0.0])
+        right = placed[name][:, 0].max() + gap
+    return placed

@@ -1,0 +1,110 @@
+"""The two lines of a seam: agreeing on their lengths, and easing one of them on purpose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from seatlook.errors import SeatlookError
+from seatlook.flattening.pattern import pair
+from seatlook.flattening.relax import HeldEdges, flatten_patch
+from seatlook.flattening.surface import Patch, Side
+from seatlook.model import Fabric, FloatArray
+
+# [m] over which the stretch beside an eased sewing line fades out. A linear fade over a strip is
+# a bend in the plane, which costs no strain; a shorter one drives the ease to the line's ends.
+_EASE_REACH = 0.15
+_EASE_PRECISION = 2e-5  # [m]
+_EASE_ROUNDS = 12
+
+
+def agreed_ratios(
+    patches: tuple[Patch, ...],
+    borders: tuple[Side, ...],
+    alone: Mapping[str, FloatArray],
+    *,
+    limit: float,
+) -> dict[str, FloatArray]:
+    """Return per side and segment its flat length over that on the surface, agreed by both."""
+    by_name = {patch.name: patch for patch in patches}
+    wish = {}
+    for side in borders:
+        patch = by_name[side.panel]
+        at = side.indices(patch)
+        wish[side.name] = _steps(alone[side.panel][at]) / _steps(patch.vertices[at])
+    agreed: dict[str, FloatArray] = {}
+    for seam in pair(borders):
+        b = seam.b[0]
+        mean = np.clip((wish[seam.a] + wish[b][::-1]) / 2, 1 - limit, 1 + limit)
+        agreed |= {seam.a: mean, b: mean[::-1]}
+    return agreed
+
+
+def relaxed(
+    patch: Patch,
+    own: Sequence[Side],
+    ratio: Mapping[str, FloatArray],
+    alone: FloatArray,
+    ease: Mapping[str, float],
+    *,
+    fabric: Fabric | None = None,
+) -> FloatArray:
+    """Flatten one panel with its seam lengths held, eased sides at their length in total.
+
+    Holding an eased side piece by piece would crumple it: a chain under compression buckles.
+    """
+    eased = [side for side in own if side.name in ease]
+    held = _held(patch, [side for side in own if side.name not in ease], ratio)
+    x = flatten_patch(patch.vertices, patch.faces, held, start=alone, fabric=fabric)
+    if not eased:
+        return x
+    agreed = np.array([_steps(patch.vertices[s.indices(patch)]) @ ratio[s.name] for s in eased])
+    wanted = agreed * [1 + ease[s.name] for s in eased]
+    amount, slope = np.zeros(len(eased)), agreed
+    found = _lengths(patch, x, eased)
+    for _ in range(_EASE_ROUNDS):
+        if np.abs(found - wanted).max() < _EASE_PRECISION:
+            return x
+        step = (wanted - found) / slope
+        amount = amount + step
+        growth = _growth(patch, eased, amount)
+        x = flatten_patch(patch.vertices, patch.faces, held, growth=growth, start=x, fabric=fabric)
+        before, found = found, _lengths(patch, x, eased)
+        slope = np.where(step == 0, slope, (found - before) / np.where(step == 0, 1.0, step))
+    raise SeatlookError(f"panel {patch.name} does not take on the ease of its sewing lines")
+
+
+def _held(patch: Patch, own: Sequence[Side], ratio: Mapping[str, FloatArray]) -> HeldEdges:
+    """Return the segments of some sides with their lengths on the surface times a ratio."""
+    at = [side.indices(patch) for side in own]
+    pairs = [np.column_stack([i[:-1], i[1:]]) for i in at]
+    length = [_steps(patch.vertices[i]) * ratio[s.name] for i, s in zip(at, own, strict=True)]
+    return HeldEdges(
+        vertices=np.concatenate([np.zeros((0, 2), np.int64), *pairs]),
+        length=np.concatenate([np.zeros(0), *length]),
+    )
+
+
+def _lengths(patch: Patch, x: FloatArray, own: Sequence[Side]) -> FloatArray:
+    return np.array([_steps(x[side.indices(patch)]).sum() for side in own])
+
+
+def _growth(patch: Patch, eased: Sequence[Side], amount: FloatArray) -> FloatArray:
+    """Return the stretch (m, 3, 3) along eased sides, fading into the panel."""
+    growth = np.tile(np.eye(3), (len(patch.faces), 1, 1))
+    middle = patch.vertices[patch.faces].mean(axis=1)
+    for side, fraction in zip(eased, amount, strict=True):
+        line = patch.vertices[side.indices(patch)]
+        centre, along = (line[1:] + line[:-1]) / 2, np.diff(line, axis=0)
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        distance, nearest = cKDTree(centre).query(middle)
+        share = np.maximum(1 - distance / min(_EASE_REACH, float(np.max(distance))), 0)
+        tangent = along[nearest]
+        growth += (fraction * share)[:, None, None] * np.einsum("mi,mj->mij", tangent, tangent)
+    return growth
+
+
+def _steps(polyline: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(np.diff(polyline, axis=0), axis=1))

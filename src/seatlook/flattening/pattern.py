@@ -1,0 +1,161 @@
+"""From flat patches to a sewable pattern: seams, allowance, notches, grain."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+import shapely
+
+from seatlook import mesh
+from seatlook.errors import InputError
+from seatlook.flattening.surface import FREE, Patch, Side
+from seatlook.model import Edge, FloatArray, IntArray, Notch, Panel, Pattern, Seam
+
+_NOTCH_DEPTH = 0.004
+_NOTCH_SPACING = 0.3
+_SHARP_TURN = np.radians(25.0)
+
+
+def cut_outline(outline: FloatArray, allowance: float) -> FloatArray:
+    """Return the cutting line (k, 2) [m], ``allowance`` outside the sew line, corners mitred.
+
+    Mitres longer than twice the allowance are cut square, as in a cutting room.
+
+    Raises
+    ------
+    InputError
+        The allowance is negative or so wide that the cutting line meets itself.
+
+    Examples
+    --------
+    >>> square = np.array([[0, 0], [0.1, 0], [0.1, 0.1], [0, 0.1]])
+    >>> line = cut_outline(square, 0.01)
+    >>> line.min(axis=0), line.max(axis=0)
+    (array([-0.01, -0.01]), array([0.11, 0.11]))
+    """
+    if allowance < 0:
+        raise InputError.single("allowance", got=allowance, expected="at least 0")
+    if allowance == 0:
+        return outline.copy()
+    grown = shapely.Polygon(outline).buffer(allowance, join_style="mitre", mitre_limit=2.0)
+    if grown.geom_type != "Polygon" or len(grown.interiors):
+        raise InputError.single(
+            "allowance", got=f"{1e3 * allowance:g} mm", expected="a cutting line that stays open"
+        )
+    ring = shapely.get_coordinates(shapely.geometry.polygon.orient(grown).exterior)
+    return np.ascontiguousarray(ring[:-1])
+
+
+def notch_fractions(length: float) -> FloatArray:
+    """Return where on a seam of ``length`` [m] notches go: the middle, and more on long seams.
+
+    An odd number, evenly spread, so the two sides' marks meet whichever end sewing starts at.
+
+    Examples
+    --------
+    >>> notch_fractions(0.1), notch_fractions(0.5)
+    (array([0.5]), array([0.25, 0.5 , 0.75]))
+    """
+    count = 2 * int(length / _NOTCH_SPACING) + 1
+    return np.asarray(np.arange(1, count + 1) / (count + 1))
+
+
+def sewing_pattern(
+    patches: tuple[Patch, ...],
+    borders: tuple[Side, ...],
+    flat: Mapping[str, FloatArray],
+    allowance: float,
+    *,
+    seam_lines: Mapping[tuple[int, int], str] = MappingProxyType({}),
+) -> Pattern:
+    """Return the pattern of flat patches (n, 2) whose grain runs along the second axis."""
+    seams = pair(borders, seam_lines)
+    partner = {seam.a: seam.b[0] for seam in seams} | {seam.b[0]: seam.a for seam in seams}
+    panels = []
+    for patch in patches:
+        outline = flat[patch.name][patch.boundary]
+        own = [side for side in borders if side.panel == patch.name]
+        notches = [
+            Notch(position=point, kind="v", depth=_NOTCH_DEPTH)
+            for side in own
+            if side.name in partner
+            for point in _notch_points(patch, side, flat[patch.name])
+        ]
+        panels.append(
+            Panel(
+                name=patch.name,
+                outline=outline,
+                corners=_corners(outline, [side.start for side in own]),
+                cut_outline=cut_outline(outline, allowance),
+                grain=np.array([0.0, 1.0]),
+                notches=tuple(notches),
+            )
+        )
+    return Pattern(
+        panels=tuple(panels), edges=MappingProxyType(_edges(patches, borders)), seams=seams
+    )
+
+
+def pair(
+    borders: tuple[Side, ...], seam_lines: Mapping[tuple[int, int], str] = MappingProxyType({})
+) -> tuple[Seam, ...]:
+    """Pair the sides that run along the same vertices; the panel that comes first is side a.
+
+    A seam is called after the line that most of its edges lie on, the second one of a line
+    ``LINE_2``; without a line after its sides.
+    """
+    order = list(dict.fromkeys(side.panel for side in borders))
+    by_ends = {(s.panel, int(s.vertices[0]), int(s.vertices[-1])): s.name for s in borders}
+    seams: list[Seam] = []
+    again: dict[str, int] = {}
+    for side in borders:
+        if side.neighbour != FREE and order.index(side.panel) < order.index(side.neighbour):
+            other = by_ends[side.neighbour, int(side.vertices[-1]), int(side.vertices[0])]
+            name = _line(side, seam_lines)
+            again[name] = again.get(name, 0) + 1
+            name += f"_{again[name]}" if again[name] > 1 else ""
+            seams.append(Seam(name=name, a=side.name, b=(other,)))
+    return tuple(seams)
+
+
+def _line(side: Side, seam_lines: Mapping[tuple[int, int], str]) -> str:
+    """Return the name of the line that a side lies on, or one made of its own."""
+    ends = np.sort(np.column_stack([side.vertices[:-1], side.vertices[1:]]), axis=1)
+    lines = Counter(seam_lines[a, b] for a, b in ends.tolist() if (a, b) in seam_lines)
+    return lines.most_common(1)[0][0] if lines else side.name.replace(".", "-")
+
+
+def _corners(outline: FloatArray, starts: list[int]) -> IntArray:
+    """Return the outline's vertices that must survive resampling: ends of edges, sharp turns."""
+    ahead = np.roll(outline, -1, axis=0) - outline
+    behind = np.roll(ahead, 1, axis=0)
+    cross = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+    turn = np.abs(np.arctan2(cross, (behind * ahead).sum(axis=1)))
+    return np.union1d(starts, np.flatnonzero(turn > _SHARP_TURN))
+
+
+def _edges(patches: tuple[Patch, ...], borders: tuple[Side, ...]) -> dict[str, Edge]:
+    size = {patch.name: len(patch.boundary) for patch in patches}
+    return {
+        side.name: Edge(
+            name=side.name,
+            panel=side.panel,
+            start=side.start,
+            end=(side.start + side.count) % size[side.panel],
+        )
+        for side in borders
+    }
+
+
+def _notch_points(patch: Patch, side: Side, flat: FloatArray) -> FloatArray:
+    """Return the notches (k, 2) of a side where the seam on the design surface has them.
+
+    Measured on the surface, both panels of the seam get them at the same stitches, eased or not.
+    """
+    at = side.indices(patch)
+    s = mesh.arc_length(patch.vertices[at])
+    where = notch_fractions(s[-1]) * s[-1]
+    return np.column_stack([np.interp(where, s, column) for column in flat[at].T])

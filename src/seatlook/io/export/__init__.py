@@ -1,0 +1,1 @@
+"""The solved cover in files for other programs, and the result file itself."""

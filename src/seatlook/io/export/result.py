@@ -1,0 +1,152 @@
+"""The result file: one ``.npz`` from which a run is drawn, mapped or continued without solving.
+
+Arrays are stored under the path of the field that holds them (``positions``, ``cover.faces``,
+``cover.stitchings.0.a.weights``); everything else is one JSON text, ``meta``. Only the core types
+listed here are ever built from it, and nothing is unpickled, so a file from elsewhere can do no
+harm.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import json
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.files import write_bytes
+from seatlook.io.toml import read_file
+from seatlook.model import (
+    Anchor,
+    Appearance,
+    Cover,
+    Curve,
+    Fabric,
+    Foam,
+    FoamMaterial,
+    Hem,
+    Material,
+    Points,
+    Solution,
+    Stage,
+    Stitching,
+    TextureMaps,
+    Thread,
+)
+
+FORMAT = "seatlook result"
+FORMAT_VERSION = 1
+
+_TYPES: dict[str, type] = {
+    t.__name__: t
+    for t in (
+        Anchor, Appearance, Cover, Curve, Fabric, Foam, FoamMaterial, Hem, Material, Points,
+        Solution, Stage, Stitching, TextureMaps, Thread,
+    )
+}  # fmt: skip
+
+
+def write_result(solution: Solution, path: Path | str) -> None:
+    """Write a solution, its cover, materials and foam included; the same one, the same bytes.
+
+    Examples
+    --------
+    >>> write_result(solution, "out/result.npz")                # doctest: +SKIP
+    >>> read_result("out/result.npz").status                    # doctest: +SKIP
+    'converged'
+    """
+    arrays: dict[str, Any] = {}
+    tree = _packed(solution, "", arrays)
+    meta = {"format": FORMAT, "format_version": FORMAT_VERSION, "solution": tree}
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, meta=np.array(json.dumps(meta)), **arrays)
+    write_bytes(Path(path), buffer.getvalue())
+
+
+def read_result(path: Path | str) -> Solution:
+    """Read a solution back exactly, to the last bit.
+
+    Raises
+    ------
+    InputError
+        When the file is absent, cut short, damaged, no result of seatlook, or of a newer version.
+    """
+    path = Path(path)
+    content = read_file(path)
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+        meta = json.loads(str(arrays.pop("meta")))
+        known = meta["format"] == FORMAT
+        version = int(meta["format_version"])
+    # NumPy and zipfile raise these on content that is cut short, damaged or another format.
+    except (OSError, EOFError, KeyError, ValueError, TypeError, AttributeError,
+            zipfile.BadZipFile, NotImplementedError) as error:  # fmt: skip
+        raise _refusal(path, f"{type(error).__name__}: {error}") from error
+    if not known:
+        raise _refusal(path, f"format {meta['format']!r}")
+    if version > FORMAT_VERSION:
+        raise InputError.single(
+            "format_version", got=version, expected=f"at most {FORMAT_VERSION}", file=path,
+            hint="the file was written by a newer seatlook",
+        )  # fmt: skip
+    try:
+        solution = _unpacked(meta["solution"], arrays, {})
+    except (KeyError, TypeError, ValueError) as error:
+        raise _refusal(path, f"{type(error).__name__}: {error}") from error
+    if not isinstance(solution, Solution):
+        raise _refusal(path, type(solution).__name__)
+    return solution
+
+
+def _refusal(path: Path, got: str) -> InputError:
+    return InputError.single("file", got=got, expected="a whole result file of seatlook", file=path)
+
+
+def _packed(value: Any, at: str, arrays: dict[str, Any]) -> Any:
+    """Turn a value into JSON, moving its arrays to ``arrays`` under their path."""
+    here = f"{at}." if at else ""
+    if isinstance(value, np.ndarray):
+        # Panels of one material share its maps, which are large.
+        at = next((name for name, other in arrays.items() if other is value), at)
+        arrays[at] = value
+        return {"array": at}
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        name = type(value).__name__
+        if _TYPES.get(name) is not type(value):
+            raise TypeError(f"{at}: {name} has no place in a result file")
+        names = [f.name for f in dataclasses.fields(value)]
+        return {"type": name} | {n: _packed(getattr(value, n), here + n, arrays) for n in names}
+    if isinstance(value, Mapping):
+        return {"map": {str(k): _packed(v, f"{here}{k}", arrays) for k, v in value.items()}}
+    if isinstance(value, tuple | list):
+        return [_packed(v, f"{here}{i}", arrays) for i, v in enumerate(value)]
+    if isinstance(value, np.generic):
+        return value.item()
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    raise TypeError(f"{at}: {type(value).__name__} has no place in a result file")
+
+
+def _unpacked(node: Any, arrays: Mapping[str, Any], maps: dict[str, Any]) -> Any:
+    """Build the value again; lists become tuples, as all sequences of the core types are.
+
+    ``maps``: the texture maps built so far, so that panels share them again.
+    """
+    if isinstance(node, list):
+        return tuple(_unpacked(v, arrays, maps) for v in node)
+    if not isinstance(node, dict):
+        return node
+    if "array" in node:
+        return arrays[node["array"]]
+    if "map" in node:
+        return MappingProxyType({k: _unpacked(v, arrays, maps) for k, v in node["map"].items()})
+    fields = {k: _unpacked(v, arrays, maps) for k, v in node.items() if k != "type"}
+    made = _TYPES[node["type"]](**fields)
+    return maps.setdefault(json.dumps(node), made) if isinstance(made, TextureMaps) else made

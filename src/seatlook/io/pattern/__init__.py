@@ -1,0 +1,1 @@
+"""Patterns in and out: DXF, and the seams file beside it."""

@@ -1,0 +1,232 @@
+"""From the loose polylines of a pattern file to closed outlines; millimetres throughout."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+import shapely.ops
+
+from seatlook.errors import InputError
+from seatlook.io.pattern.cuts import close_cuts
+from seatlook.model import FloatArray, IntArray, Notch
+
+MEETING_MM = 0.1  # exporters write 2 to 4 decimals of a millimetre or an inch
+CORNER_DEG = 30.0
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """Polylines joined end to end; a closed one does not repeat its first point."""
+
+    points: FloatArray
+    closed: bool
+    joints: FloatArray
+    notches: tuple[Notch, ...] = ()
+
+    @property
+    def area(self) -> float:
+        """Signed area [mm2], positive when counter-clockwise."""
+        x, y = self.points.T
+        return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def join(lines: Sequence[FloatArray]) -> list[Chain]:
+    """Join polylines where exactly two ends meet.
+
+    Parameters
+    ----------
+    lines : (k, 2) each; a closed polyline repeats its first point
+
+    Examples
+    --------
+    >>> [chain] = join([np.array([[0.0, 0], [1, 0]]), np.array([[2.0, 2], [1, 0]])])
+    >>> chain.points.tolist(), chain.closed
+    ([[0.0, 0.0], [1.0, 0.0], [2.0, 2.0]], False)
+    """
+    partner = _partners(lines)
+    ends = range(2 * len(lines))
+    done: set[int] = set()
+    chains = []
+    # Open chains start at a free end; what is left over are loops.
+    for start in [*(e for e in ends if e not in partner), *ends]:
+        if start // 2 in done:
+            continue
+        route = [start]
+        done.add(start // 2)
+        while (following := partner.get(route[-1] ^ 1)) is not None and following // 2 not in done:
+            route.append(following)
+            done.add(following // 2)
+        parts = [lines[e // 2][:: -1 if e % 2 else 1] for e in route]
+        closed = partner.get(route[-1] ^ 1) == start
+        joints = np.array([p[0] for p in parts[0 if closed and len(parts) > 1 else 1 :]])
+        points = _without_repeats(np.vstack(parts), closed=closed)
+        chains.append(Chain(points, closed, joints.reshape(-1, 2)))
+    return chains
+
+
+def _partners(lines: Sequence[FloatArray]) -> dict[int, int]:
+    """Pair the ends that meet; end 2 i is the start of line i, end 2 i + 1 its last point."""
+    if not lines:
+        return {}
+    ends = np.array([p for line in lines for p in (line[0], line[-1])])
+    near = np.hypot(*(ends[:, None] - ends[None]).transpose(2, 0, 1)) < MEETING_MM
+    return {
+        e: int(next(o for o in np.flatnonzero(near[e]) if o != e))
+        for e in range(len(ends))
+        if near[e].sum() == 2
+    }
+
+
+def _without_repeats(points: FloatArray, *, closed: bool) -> FloatArray:
+    """Drop points that repeat the one before."""
+    keep = np.r_[True, np.hypot(*np.diff(points, axis=0).T) > MEETING_MM / 100]
+    points = points[keep]
+    while closed and len(points) > 1 and np.hypot(*(points[-1] - points[0])) < MEETING_MM:
+        points = points[:-1]
+    return points
+
+
+def unfold(lines: Sequence[FloatArray], axis: FloatArray) -> list[FloatArray]:
+    """Add to the lines of a half piece their mirror images; drop what lies on the axis.
+
+    Parameters
+    ----------
+    axis : (2, 2), two points of the fold line
+    """
+    unfolded = []
+    for line in lines:
+        for part in _off_axis(line, axis):
+            unfolded += [part, reflect(part, axis)]
+    return unfolded
+
+
+def reflect(points: FloatArray, axis: FloatArray) -> FloatArray:
+    """Mirror points (k, 2) at the line through ``axis`` (2, 2).
+
+    Examples
+    --------
+    >>> reflect(np.array([[3.0, 1.0]]), np.array([[0.0, 0.0], [0.0, 5.0]])).tolist()
+    [[-3.0, 1.0]]
+    """
+    along = (axis[1] - axis[0]) / np.hypot(*(axis[1] - axis[0]))
+    offset = points - axis[0]
+    return np.asarray(axis[0] + 2 * np.outer(offset @ along, along) - offset)
+
+
+def distance_to(points: FloatArray, axis: FloatArray) -> FloatArray:
+    """Signed distance (k,) of points to the line through ``axis``, positive on its left."""
+    along = (axis[1] - axis[0]) / np.hypot(*(axis[1] - axis[0]))
+    offset = points - axis[0]
+    return np.asarray(along[0] * offset[:, 1] - along[1] * offset[:, 0])
+
+
+def _off_axis(line: FloatArray, axis: FloatArray) -> list[FloatArray]:
+    """Cut the segments out that lie on the axis and pull the ends exactly onto it."""
+    away = distance_to(line, axis)
+    on = np.abs(away) < MEETING_MM
+    line = np.where(on[:, None], (line + reflect(line, axis)) / 2, line)
+    cuts = np.flatnonzero(on[:-1] & on[1:])
+    parts = np.split(line, cuts + 1)
+    return [p for p in parts if len(p) > 1]
+
+
+def closed_outline(chains: Sequence[Chain], *, key: str, smallest_notch: float = 0.0) -> Chain:
+    """Return the one closed chain, counter-clockwise, without the cuts below a size [mm].
+
+    Raises
+    ------
+    InputError
+        When the outline is missing, open, doubled or crosses itself.
+    """
+    for chain in chains:
+        if not chain.closed:
+            first, last = chain.points[[0, -1]].round(2).tolist()
+            gap = np.hypot(*(chain.points[0] - chain.points[-1]))
+            raise InputError.single(
+                key,
+                got=f"an open outline, from {first} to {last} mm ({gap:.2f} mm apart)",
+                expected="a closed outline",
+            )
+    if len(chains) != 1:
+        raise InputError.single(key, got=f"{len(chains)} closed outlines", expected="one")
+    chain = chains[0]
+    if chain.area < 0:
+        chain = replace(chain, points=_reversed(chain.points))
+    points, notches = close_cuts(chain.points, smallest_notch)
+    # A slit without width is drawn there and back, so it must be gone before this.
+    check_simple(points, key=key)
+    return replace(chain, points=points, notches=notches)
+
+
+def check_simple(points: FloatArray, *, key: str) -> None:
+    """Refuse an outline that crosses or touches itself."""
+    polygon = shapely.Polygon(points) if len(points) > 2 else shapely.Polygon()
+    if not polygon.is_valid or polygon.area == 0:
+        reason = shapely.is_valid_reason(polygon) if len(points) > 2 else "fewer than 3 points"
+        where = reason.partition("[")[2].rstrip("]")
+        got = f"an outline that crosses itself at ({where}) mm" if where else "no area"
+        raise InputError.single(key, got=got, expected="a simple outline")
+
+
+def trimmed(cut: Chain, seams: Sequence[Chain], *, key: str) -> Chain:
+    """Return the outline that open sew lines leave of the cut outline.
+
+    Where only some edges carry an allowance, the sew lines end on the cut line, which is itself
+    the edge elsewhere.
+    """
+    polygon = shapely.Polygon(cut.points)
+    for seam in seams:
+        parts = shapely.ops.split(polygon, shapely.LineString(_lengthened(seam.points))).geoms
+        if len(parts) < 2:
+            first, last = seam.points[[0, -1]].round(2).tolist()
+            raise InputError.single(
+                key,
+                got=f"an open sew line, from {first} to {last} mm",
+                expected="a closed one, or both ends on the cut line",
+            )
+        polygon = max(parts, key=lambda p: p.area)
+    points = _without_repeats(np.array(polygon.exterior.coords)[:-1], closed=True)
+    ends = np.vstack([s.points[[0, -1]] for s in seams] + [s.joints for s in seams] + [cut.joints])
+    chain = Chain(points, True, ends)
+    return chain if chain.area > 0 else Chain(_reversed(points), True, ends)
+
+
+def _lengthened(points: FloatArray) -> FloatArray:
+    """Lengthen both ends a little, so that a line ending at the boundary crosses it."""
+    ends = []
+    for end, inner in ((points[0], points[1]), (points[-1], points[-2])):
+        ends.append(end + MEETING_MM * (end - inner) / np.hypot(*(end - inner)))
+    return np.vstack([ends[0], points[1:-1], ends[1]])
+
+
+def _reversed(points: FloatArray) -> FloatArray:
+    """Run the other way round from the same first point."""
+    return np.roll(points[::-1], 1, axis=0)
+
+
+def corners(points: FloatArray, marks: FloatArray, *, within: float = 0.5) -> IntArray:
+    """Return the vertices of a closed outline at which it turns sharply or which are marked.
+
+    Parameters
+    ----------
+    points : (n, 2) [mm]
+    marks : (k, 2) [mm]    turn points and joints; one farther than ``within`` counts nothing
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0], [5, 0], [10, 0], [10, 10], [0, 10]])
+    >>> corners(square, np.array([[5.0, 0.2]])).tolist()
+    [0, 1, 2, 3, 4]
+    """
+    before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    turn = np.degrees(np.abs(np.arctan2(cross, (before * after).sum(axis=1))))
+    found = set(np.flatnonzero(turn > CORNER_DEG).tolist())
+    for mark in marks:
+        distance = np.hypot(*(points - mark).T)
+        if distance.min() < within:
+            found.add(int(distance.argmin()))
+    return np.array(sorted(found), dtype=np.int64)

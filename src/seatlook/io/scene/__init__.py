@@ -1,0 +1,1 @@
+"""The scene file: everything one run needs, read and checked together."""

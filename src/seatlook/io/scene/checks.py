@@ -1,0 +1,157 @@
+"""Whether the parts of a scene can fit each other in space: wires, foam, placed panels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import shapely
+import trimesh.triangles
+from scipy.spatial import cKDTree
+
+from seatlook.io.toml import Document
+from seatlook.model import FloatArray, Foam, Pattern, Pose
+
+# A cover is cut a little small and never much larger; beyond this the line and the wire do not
+# belong together, or a whole line is sent to a piece of the wire.
+LONGEST_LINE = 1.05
+# How far a tie can press soft foam in where no trench is modelled.
+DEEPEST_WIRE = 0.030  # m
+_SPACING = 0.005  # of the points at which a wire is looked at [m]
+_ONE_PLANE = 0.001  # distance of panels that lie on each other [m]
+_OVERLAP = 0.01  # share of the smaller panel
+_nearest: Any = trimesh.triangles.closest_point  # one point for each of (m, 3, 3) triangles
+
+
+def check_wires(
+    document: Document, row: dict[str, Any], pattern: Pattern | None, foam: Foam | None
+) -> None:
+    """Report hooks whose line is longer than their wire, and wires inside solid foam."""
+    if foam is None:
+        return
+    depth = {name: _depth(points, foam) for name, points in foam.curves.items()}
+    for number, hook in enumerate(row["hook"]):
+        wire = foam.curves.get(hook["wire"])
+        if wire is None:
+            continue
+        key = ("hook", number, "wire")
+        length, line = _length(wire), line_length(hook["line"], pattern)
+        if line is not None and line > LONGEST_LINE * length:
+            document.report(
+                ("hook", number, "line"),
+                f"{hook['line']!r}, {1e3 * line:.1f} mm long",
+                f"at most the length of its wire {hook['wire']!r}, {1e3 * length:.1f} mm",
+            )
+        if depth[hook["wire"]] > DEEPEST_WIRE:
+            document.report(
+                key,
+                f"{hook['wire']!r}, {1e3 * depth[hook['wire']]:.1f} mm inside solid foam",
+                f"a wire in a trench, or at most {1e3 * DEEPEST_WIRE:g} mm below the surface",
+            )
+
+
+def check_overlap(
+    document: Document, pattern: Pattern | None, placement: Mapping[str, Pose]
+) -> None:
+    """Report panels that are placed in one plane and cover each other."""
+    if pattern is None:
+        return
+    placed = [p for p in pattern.panels if p.name in placement]
+    for a, b in combinations(placed, 2):
+        pose, other = placement[a.name], placement[b.name]
+        world = b.outline @ other.rotation[:, :2].T + other.translation
+        u, v, w = ((world - pose.translation) @ pose.rotation).T
+        if np.abs(w).max() > _ONE_PLANE:
+            continue
+        one, two = shapely.Polygon(a.outline), shapely.Polygon(np.column_stack([u, v]))
+        shared = one.intersection(two).area
+        if shared > _OVERLAP * min(one.area, two.area):
+            document.report(
+                ("placement", b.name),
+                f"{1e4 * shared:.1f} cm2 on {a.name}, in the same plane",
+                "panels beside or above each other",
+            )
+
+
+def check_hem(document: Document, pattern: Pattern | None, hem: bool | None) -> None:
+    """Report panels that their folded allowances would not fit below."""
+    if not hem or pattern is None:
+        return
+    for panel in pattern.panels:
+        points = _sewn_points(panel.name, pattern)
+        if not len(points):
+            continue
+        ring = shapely.LinearRing(panel.cut_outline)
+        width = float(shapely.distance(ring, shapely.points(points)).max())
+        body = shapely.Polygon(panel.outline)
+        if body.buffer(-0.5 * width).is_empty:
+            document.report(
+                ("hem",),
+                f"an allowance of {1e3 * width:.1f} mm on {panel.name}, "
+                f"which is {2e3 * shapely.maximum_inscribed_circle(body).length:.1f} mm wide",
+                "an allowance narrower than its panel",
+            )
+
+
+def _sewn_points(name: str, pattern: Pattern) -> FloatArray:
+    """Vertices (k, 2) of a panel's sewn edges."""
+    sewn = {edge for seam in pattern.seams for edge in (seam.a, *seam.b)}
+    lines = [
+        pattern.edge_points(e.name)
+        for e in pattern.edges.values()
+        if e.panel == name and e.name in sewn
+    ]
+    return np.concatenate([np.zeros((0, 2)), *lines])
+
+
+def line_length(line: str | None, pattern: Pattern | None) -> float | None:
+    """Return the length of a seam's near side or of PANEL/LINE; None for unknown names."""
+    if pattern is None or line is None:
+        return None
+    for seam in pattern.seams:
+        if seam.name == line:
+            return pattern.edge_length(seam.a)
+    panel, _, name = line.partition("/")
+    for p in pattern.panels:
+        if p.name == panel and name in p.internal_lines:
+            return _length(p.internal_lines[name])
+    return None
+
+
+def _length(points: FloatArray) -> float:
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+
+def _depth(curve: FloatArray, foam: Foam) -> float:
+    """Largest depth of a curve below the surface of the foam [m], 0 outside."""
+    steps = np.linalg.norm(np.diff(curve, axis=0), axis=1)
+    arc = np.concatenate([[0.0], np.cumsum(steps)])
+    at = np.linspace(0.0, arc[-1], max(2, int(np.ceil(arc[-1] / _SPACING)) + 1))
+    points = np.column_stack([np.interp(at, arc, column) for column in curve.T])
+    # Vertices lie on the surface: a point near one is not deep, and few points are left.
+    far = points[cKDTree(foam.vertices).query(points)[0] > DEEPEST_WIRE]
+    triangles = foam.vertices[foam.faces]
+    deepest = 0.0
+    for point in far:
+        if _winding(point, triangles) > 0.5:
+            here = np.tile(point, (len(triangles), 1))
+            nearest = _nearest(triangles, here)
+            deepest = max(deepest, float(np.linalg.norm(nearest - point, axis=1).min()))
+    return deepest
+
+
+def _winding(point: FloatArray, triangles: FloatArray) -> float:
+    """Times the surface winds around a point: solid angles (Van Oosterom and Strackee 1983)."""
+    a, b, c = (triangles - point).transpose(1, 0, 2)
+    la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+    dot = np.einsum
+    top = dot("ij,ij->i", a, np.cross(b, c))
+    bottom = (
+        la * lb * lc
+        + dot("ij,ij->i", a, b) * lc
+        + dot("ij,ij->i", b, c) * la
+        + dot("ij,ij->i", c, a) * lb
+    )
+    return float(np.arctan2(top, bottom).sum() / (2 * np.pi))

@@ -1,0 +1,151 @@
+"""Every key of a scene file, with its type, range and default; docs/scene.md explains them."""
+
+from __future__ import annotations
+
+from seatlook.io.colour import Colour
+from seatlook.io.scene.views import CAMERA, RIG
+from seatlook.io.schema import (
+    MM,
+    Array,
+    Flag,
+    Integer,
+    Kind,
+    Named,
+    Number,
+    Rows,
+    Table,
+    Text,
+    Texts,
+)
+from seatlook.model.cover import RAMPS
+from seatlook.model.scene import MEASURES, SCORE_MEASURES
+
+AS_BUILT = "as built"
+_NAME = Text(required=True)
+
+KEYS: dict[str, Kind] = {
+    "schema": Integer(low=1, high=1, required=True),
+    "name": Text(),
+    "hem": Flag(default=False),
+    "pattern": Table(
+        {
+            "file": Text(required=True),
+            "seams": Text(required=True),
+            "size": Text(),
+            "units": Text(choices=("metric", "english")),
+            "material": Text(),
+        },
+        required=True,
+    ),
+    "foam": Table(
+        {
+            "file": Text(required=True),
+            "unit": Text(choices=("mm", "m"), required=True),
+            "up": Text(choices=("z", "y"), default="z"),
+            "material": Text(required=True),
+            "curves": Text(),
+        },
+        required=True,
+    ),
+    "design": Table(
+        {
+            "file": Text(),
+            "unit": Text(choices=("mm", "m"), default="mm"),
+            "side": Text(choices=("middle", "visible"), default="middle"),
+        }
+    ),
+    "mesh": Table(
+        {
+            "element_size_mm": Number(low=0.5, high=100, scale=MM, required=True),
+            "smallest_notch_mm": Number(low=0, high=100, scale=MM, default=5.0),
+            "seed": Integer(default=0),
+        },
+        required=True,
+    ),
+    "placement": Named(
+        Table(
+            {
+                "axes": Texts(),
+                "rotation": Array(shape=(3, 3)),
+                "translation_mm": Array(shape=(3,), scale=MM, required=True),
+            }
+        )
+    ),
+    "panel": Named(
+        Table(
+            {
+                "material": Text(),
+                "grain_deg": Number(low=-360, high=360),
+                "element_size_mm": Number(low=0.5, high=100, scale=MM),
+            }
+        )
+    ),
+    "stage": Rows(
+        Table(
+            {
+                "name": _NAME,
+                "start_s": Number(low=0, required=True),
+                "end_s": Number(above=0, required=True),
+                "ramp": Text(choices=RAMPS, default="linear"),
+                "group": Text(),
+                "seams": Texts(or_one=True, default=()),
+            }
+        ),
+        required=True,
+    ),
+    "hook": Rows(
+        Table(
+            {
+                **dict.fromkeys(("name", "line", "wire", "stage"), _NAME),
+                "pitch_mm": Number(above=0, high=1000, scale=MM),
+                "from_mm": Number(low=0, scale=MM, default=0.0),
+                "to_mm": Number(above=0, scale=MM),
+                "limit_n": Number(above=0),
+            }
+        )
+    ),
+    "frame": Rows(
+        Table(
+            {
+                "name": _NAME,
+                "edges": Texts(or_one=True, required=True),
+                "curve": _NAME,
+                "stage": _NAME,
+            }
+        )
+    ),
+    "rig": Rows(Table(RIG), required=True),
+    "camera": Table(CAMERA),
+    "gallery": Table({"textures": Texts(or_one=True, default=(AS_BUILT,))}),
+    "thread": Table(
+        {
+            "colour": Colour(),
+            "offset_mm": Number(low=0, high=20, scale=MM, default=5.0),
+            "pitch_mm": Number(above=0, high=50, scale=MM, default=5.0),
+            "length_mm": Number(above=0, high=50, scale=MM, default=4.0),
+            "width_mm": Number(low=0, high=5, scale=MM, default=0.9),
+        }
+    ),
+    "zones": Table(
+        {
+            "box": Rows(
+                Table(
+                    {
+                        "name": _NAME,
+                        "panel": _NAME,
+                        "low_mm": Array(shape=(2,), scale=MM, required=True),
+                        "high_mm": Array(shape=(2,), scale=MM, required=True),
+                        "class": Text(choices=("A", "B", "C"), default="A"),
+                    }
+                )
+            )
+        }
+    ),
+    "wrinkle": Table(
+        {
+            "curvature": Text(choices=("tensor", "paper"), default="tensor"),
+            "c_threshold_per_mm": Number(above=0, scale=1 / MM),
+        }
+    ),
+    "accept": Named(Table(dict.fromkeys((*MEASURES, *SCORE_MEASURES), Number(low=0)))),
+}

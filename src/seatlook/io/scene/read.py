@@ -1,0 +1,296 @@
+"""The scene file: everything one run needs, read and checked together. See docs/scene.md."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, cast
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.io.material import material_path, read_foam_material, read_material
+from seatlook.io.mesh import read_foam
+from seatlook.io.pattern.dxf import SMALLEST_NOTCH
+from seatlook.io.pattern.seams import read_pattern
+from seatlook.io.scene.changes import change
+from seatlook.io.scene.checks import check_hem, check_overlap, check_wires
+from seatlook.io.scene.keys import AS_BUILT, KEYS
+from seatlook.io.scene.ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
+from seatlook.io.scene.views import make_cameras, make_rigs
+from seatlook.io.schema import known, read_table, shown
+from seatlook.io.surface import read_surface
+from seatlook.io.texture_maps import map_files
+from seatlook.io.toml import Document, Key, read_document
+from seatlook.model import (
+    Appearance,
+    Design,
+    FloatArray,
+    Foam,
+    Material,
+    Pattern,
+    Pose,
+    Scene,
+    Thread,
+)
+
+# Literal eq. (1) halves the curvature of a free fold, so its threshold is half as well [1/m].
+_C_THRESHOLD = {"tensor": 20.0, "paper": 10.0}
+_AXES = {
+    sign + letter: (1.0 if sign == "+" else -1.0) * np.eye(3)[number]
+    for number, letter in enumerate("xyz")
+    for sign in "+-"
+}
+
+
+def load_scene(path: Path | str, *, changes: Iterable[str] = ()) -> Scene:
+    """Read a scene and every file it names; paths in it are seen from its own folder.
+
+    Parameters
+    ----------
+    changes : values set over those of the file, such as ``"mesh.seed=3"`` or
+        ``"rig.sun.light.0.elevation_deg=20"``
+
+    Raises
+    ------
+    InputError
+        With all problems of the scene and of its files: unknown, missing or wrong keys, files that
+        are absent or unreadable, names that do not exist. Each carries its file and line.
+    """
+    document = read_document(Path(path))
+    change(document, changes)
+    return _Reader(document, read_table(document, KEYS)).scene()
+
+
+@dataclass(slots=True)
+class _Reader:
+    """Builds the parts of a scene; what cannot be built is reported and left out."""
+
+    document: Document
+    row: dict[str, Any]
+    files: dict[Path, bytes] = field(default_factory=dict)
+    read: dict[Path, Material | None] = field(default_factory=dict)
+
+    def scene(self) -> Scene:
+        row, document = self.row, self.document
+        pattern, foam, design = self.pattern(), self.foam(), self.design()
+        boxes = make_boxes(document, row["zones"]["box"], pattern)
+        parts: dict[str, Any] = {
+            "materials": self.materials(pattern),
+            "textures": self.textures(),
+            "placement": self.placement(pattern),
+            "stages": make_stages(document, row["stage"], pattern),
+            "hooks": make_hooks(document, row, pattern, foam),
+            "frames": make_frames(document, row, pattern, foam),
+            "limits": make_limits(document, row["accept"], pattern, boxes),
+            "rigs": make_rigs(document, row["rig"]),
+            "cameras": make_cameras(document, row["camera"], _centre(foam)),
+        }
+        check_wires(document, row, pattern, foam)
+        check_overlap(document, pattern, parts["placement"])
+        check_hem(document, pattern, row["hem"])
+        with document.blame(("thread",)):
+            parts["thread"] = _thread(row["thread"])
+        document.finish()
+        curvature = row["wrinkle"]["curvature"]
+        return Scene(
+            name=row["name"] or document.file.stem,
+            path=document.file,
+            digest=self.digest(),
+            pattern=cast("Pattern", pattern),
+            foam=cast("Foam", foam),
+            boxes=boxes,
+            design=design,
+            hem=row["hem"],
+            element_size=row["mesh"]["element_size_mm"],
+            element_sizes=MappingProxyType(
+                {n: size for n, p in row["panel"].items() if (size := p["element_size_mm"])}
+            ),
+            smallest_notch=row["mesh"]["smallest_notch_mm"],
+            seed=row["mesh"]["seed"],
+            curvature=curvature,
+            c_threshold=row["wrinkle"]["c_threshold_per_mm"] or _C_THRESHOLD[curvature],
+            **parts,
+        )
+
+    def digest(self) -> str:
+        """Hash the contents in the order in which the scene names them, not the paths."""
+        contents = [self.document.content, *self.files.values()]
+        parts = (hashlib.sha256(content).digest() for content in contents)
+        return hashlib.sha256(b"".join(parts)).hexdigest()
+
+    def file(self, key: Key, name: str | None) -> Path | None:
+        """Return the path of a file that the scene names, if there is such a file."""
+        if name is None:
+            return None
+        return self.existing(key, name, self.document.file.parent / name)
+
+    def existing(self, key: Key, name: str, path: Path) -> Path | None:
+        if path not in self.files:
+            if not path.is_file():
+                self.document.report(key, shown(name), "a file", f"there is none at {path}")
+                return None
+            self.files[path] = path.read_bytes()
+        return path
+
+    def pattern(self) -> Pattern | None:
+        row, notch = self.row["pattern"], self.row["mesh"]["smallest_notch_mm"]
+        path = self.file(("pattern", "file"), row["file"])
+        seams = self.file(("pattern", "seams"), row["seams"])
+        if path is None or seams is None:
+            return None
+        try:
+            pattern = read_pattern(
+                path,
+                seams,
+                size=row["size"],
+                units=row["units"],
+                smallest_notch=SMALLEST_NOTCH if notch is None else notch,
+            )
+        except InputError as error:
+            self.document.note(("pattern",), error)
+            return None
+        panels = []
+        for panel in pattern.panels:
+            angle = self.row["panel"].get(panel.name, {}).get("grain_deg")
+            if angle is not None:
+                radians = np.radians(angle)
+                grain = np.array([np.cos(radians), np.sin(radians)])
+                panel = replace(panel, grain=grain)
+            panels.append(panel)
+        return replace(pattern, panels=tuple(panels))
+
+    def foam(self) -> Foam | None:
+        row = self.row["foam"]
+        path = self.file(("foam", "file"), row["file"])
+        curves = self.file(("foam", "curves"), row["curves"])
+        if path is None or row["unit"] is None or row["material"] is None:
+            return None
+        if row["curves"] is not None and curves is None:
+            return None
+        material_file = self.material_file(("foam", "material"), row["material"])
+        if material_file is None:
+            return None
+        try:
+            return read_foam(
+                path,
+                material=read_foam_material(material_file),
+                unit=row["unit"],
+                up=row["up"],
+                curves=curves,
+            )
+        except InputError as error:
+            wrong = [p for p in error.problems if p.key == "size"]
+            for p in wrong:
+                got = f'"{row["unit"]}", by which {path.name} is {p.got} wide'
+                self.document.report(("foam", "unit"), got, p.expected, p.hint)
+            if not wrong:
+                self.document.note(("foam",), error)
+            return None
+
+    def design(self) -> Design | None:
+        row = self.row["design"]
+        path = self.file(("design", "file"), row["file"])
+        if path is None or row["unit"] is None:
+            return None
+        try:
+            drawn = read_surface(path, unit=row["unit"])
+        except InputError as error:
+            self.document.note(("design",), error)
+            return None
+        return Design(**drawn._asdict(), visible=row["side"] == "visible")
+
+    def material_file(self, key: Key, name: str) -> Path | None:
+        try:
+            path = material_path(name, beside=self.document.file.parent)
+        except InputError as error:
+            for p in error.problems:
+                self.document.report(key, p.got, p.expected, p.hint)
+            return None
+        return self.existing(key, name, path)
+
+    def material(self, key: Key, name: str) -> Material | None:
+        """Read a material once, however many panels have it."""
+        path = self.material_file(key, name)
+        if path is None:
+            return None
+        if path not in self.read:
+            self.read[path] = None
+            with self.document.blame(key):
+                material = self.read[path] = read_material(path)
+                maps = material.appearance.maps
+                if maps is not None:
+                    for file in map_files(path.parent / maps.folder).values():
+                        self.files[file] = file.read_bytes()
+        return self.read[path]
+
+    def materials(self, pattern: Pattern | None) -> MappingProxyType[str, Material]:
+        default = self.row["pattern"]["material"]
+        own = {n: r["material"] for n, r in self.row["panel"].items() if r["material"] is not None}
+        names = tuple(own) if pattern is None else tuple(p.name for p in pattern.panels)
+        if pattern is not None:
+            for name in self.row["panel"]:
+                known(self.document, ("panel", name), name, names, "a panel of the pattern")
+        found = {}
+        for name in names:
+            key = ("panel", name, "material") if name in own else ("pattern", "material")
+            wanted = own.get(name, default)
+            if wanted is None:
+                self.document.report(
+                    ("panel", name, "material"), "nothing", "a material, here or in [pattern]"
+                )
+            elif (material := self.material(key, wanted)) is not None:
+                found[name] = material
+        return MappingProxyType(found)
+
+    def textures(self) -> MappingProxyType[str, Appearance | None]:
+        looks: dict[str, Appearance | None] = {}
+        for name in self.row["gallery"]["textures"] or ():
+            if name == AS_BUILT:
+                looks[name] = None
+            elif (material := self.material(("gallery", "textures"), name)) is not None:
+                looks[material.name] = material.appearance
+        return MappingProxyType(looks)
+
+    def placement(self, pattern: Pattern | None) -> MappingProxyType[str, Pose]:
+        poses = {}
+        for name, row in self.row["placement"].items():
+            key = ("placement", name)
+            if pattern is not None:
+                panels = (p.name for p in pattern.panels)
+                known(self.document, key, name, panels, "a panel of the pattern")
+            rotation = self.rotation(key, row)
+            if rotation is not None and row["translation_mm"] is not None:
+                with self.document.blame(key):
+                    poses[name] = Pose(rotation=rotation, translation=row["translation_mm"])
+        return MappingProxyType(poses)
+
+    def rotation(self, key: Key, row: dict[str, Any]) -> FloatArray | None:
+        """Return the rotation given as a matrix or by the directions of the panel's two axes."""
+        if (row["axes"] is None) == (row["rotation"] is None):
+            got = "neither" if row["axes"] is None else "both"
+            self.document.report(key, got, "one of axes and rotation")
+            return None
+        if row["axes"] is None:
+            return cast("FloatArray", row["rotation"])
+        letters = [axis[1:] for axis in row["axes"]]
+        if len(letters) != 2 or letters[0] == letters[1] or not set(row["axes"]) <= set(_AXES):
+            expected = f"two different axes out of {', '.join(_AXES)}"
+            self.document.report((*key, "axes"), list(row["axes"]), expected)
+            return None
+        u, v = (_AXES[axis] for axis in row["axes"])
+        return np.column_stack([u, v, np.cross(u, v)])
+
+
+def _thread(row: dict[str, Any]) -> Thread:
+    return Thread(**{key.removesuffix("_mm"): v for key, v in row.items() if v is not None})
+
+
+def _centre(foam: Foam | None) -> FloatArray:
+    """Return the middle of the foam's bounding box, what the views look at."""
+    if foam is None:
+        return np.zeros(3)
+    return np.asarray((foam.vertices.min(axis=0) + foam.vertices.max(axis=0)) / 2)

@@ -1,0 +1,164 @@
+"""The parts of a scene file that say how it is lit and looked at."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.io.panorama import read_panorama
+from seatlook.io.schema import MM, Array, Kind, Number, Rows, Table, Text, Texts
+from seatlook.io.toml import Document, Key
+from seatlook.model import LIGHTS, VIEWS, Camera, FloatArray, Light, Rig, named_view
+
+
+@dataclass(frozen=True, slots=True)
+class LightTable:
+    """``kind`` and the arguments of that function of ``model.LIGHTS``; a Light, or None."""
+
+    required: bool = False
+
+    def read(self, document: Document, key: Key, value: Any) -> dict[str, Any]:
+        """Return the value, converted; report what is wrong with it."""
+        kinds = {"kind": Text(choices=tuple(LIGHTS), required=True)}
+        chosen = value.get("kind") if isinstance(value, dict) else None
+        if not isinstance(chosen, str) or chosen not in LIGHTS:
+            # Without a kind, nothing can be said about the other keys.
+            bare = {"kind": chosen} if chosen is not None else {}
+            Table(kinds).read(document, key, bare if isinstance(value, dict) else value)
+            return {"light": None}
+        make = LIGHTS[chosen]
+        before = len(document.problems)
+        row = Table({**kinds, **arguments(make)}).read(document, key, value)
+        light: Light | None = None
+        if len(document.problems) == before:
+            given = {k: v for k, v in row.items() if k in value and k != "kind"}
+            with document.blame(key):
+                light = make(**given)
+        return {"light": light}
+
+
+def arguments(make: Callable[..., Light]) -> dict[str, Kind]:
+    """Return what a light's function takes, read from its signature."""
+    kinds: dict[str, Kind] = {}
+    for name, parameter in inspect.signature(make).parameters.items():
+        required = parameter.default is inspect.Parameter.empty
+        annotation = str(parameter.annotation)
+        if annotation == "str":
+            kinds[name] = Text(required=required)
+        elif annotation.startswith("tuple"):
+            kinds[name] = Array(shape=(3,), required=required)
+        else:
+            kinds[name] = Number(required=required)
+    return kinds
+
+
+SIZE = Array(shape=(2,), low=16, high=16384)
+POINT = Array(shape=(3,), scale=MM)
+
+RIG: dict[str, Kind] = {
+    "name": Text(required=True),
+    "ambient_cd_m2": Number(low=0, high=1e6, default=0.0),
+    "panorama": Text(),
+    "panorama_cd_m2": Number(above=0, default=1.0),
+    "ev100": Number(low=-10, high=30),
+    "light": Rows(LightTable()),
+}
+CAMERA: dict[str, Kind] = {
+    "views": Texts(choices=tuple(VIEWS), or_one=True, default=("front_34",)),
+    "target_mm": POINT,
+    "distance_mm": Number(above=0, scale=MM, default=1100.0),
+    "size": SIZE,
+    "custom": Rows(
+        Table(
+            {
+                "name": Text(required=True),
+                "position_mm": Array(shape=(3,), scale=MM, required=True),
+                "target_mm": POINT,
+                "up": Array(shape=(3,)),
+                "vertical_fov_deg": Number(low=1, high=120),
+                "size": SIZE,
+            }
+        )
+    ),
+}
+
+
+def make_rigs(document: Document, rows: list[dict[str, Any]]) -> tuple[Rig, ...]:
+    """Build the rigs of a scene; a rig of which a light is wrong is left out."""
+    rigs = []
+    for number, row in enumerate(rows):
+        lights = [light["light"] for light in row["light"] or ()]
+        if row["name"] is None or row["ambient_cd_m2"] is None or None in lights:
+            continue
+        with document.blame(("rig", number)):
+            rigs.append(
+                Rig(
+                    name=row["name"],
+                    lights=tuple(lights),
+                    ambient=row["ambient_cd_m2"],
+                    ev100=row["ev100"],
+                    panorama=_sky(document, number, row),
+                )
+            )
+    return tuple(rigs)
+
+
+def _sky(document: Document, number: int, row: dict[str, Any]) -> FloatArray | None:
+    """Panorama [cd/m2] of a rig, beside the scene file; ``panorama_cd_m2`` is what 1 stands for."""
+    if row["panorama"] is None:
+        return None
+    path = document.file.parent / row["panorama"]
+    if not path.is_file():
+        document.report(
+            ("rig", number, "panorama"), row["panorama"], "an .hdr or .exr file that exists"
+        )
+        return None
+    return np.asarray(row["panorama_cd_m2"] * read_panorama(path))
+
+
+def make_cameras(document: Document, row: dict[str, Any], centre: FloatArray) -> tuple[Camera, ...]:
+    """Build the named views and the user's own cameras, looking at ``centre`` [m] by default."""
+    cameras = []
+    target = centre if row["target_mm"] is None else row["target_mm"]
+    size = _size(row["size"]) or (1280, 720)
+    for view in row["views"] or ():
+        with document.blame(("camera", "views")):
+            cameras.append(
+                named_view(view, target=target, size=size, distance=row["distance_mm"] or 1.1)
+            )
+    for number, own in enumerate(row["custom"] or ()):
+        if own["name"] is None or own["position_mm"] is None:
+            continue
+        if own["name"] in VIEWS:
+            document.report(("camera", "custom", number, "name"), own["name"], "a name of its own")
+        options = {k: own[k] for k in ("up", "vertical_fov_deg") if own[k] is not None}
+        with document.blame(("camera", "custom", number)):
+            cameras.append(
+                _camera(
+                    name=own["name"],
+                    position=own["position_mm"],
+                    target=target if own["target_mm"] is None else own["target_mm"],
+                    size=_size(own["size"]) or size,
+                    **options,
+                )
+            )
+    return tuple(cameras)
+
+
+def _camera(**values: Any) -> Camera:
+    camera = Camera(**values)
+    ahead = camera.target - camera.position
+    if np.linalg.norm(np.cross(ahead, camera.up)) < 1e-6 * np.linalg.norm(ahead):
+        raise InputError.single(
+            "up", got=camera.up.tolist(), expected="a direction across the line of sight"
+        )
+    return camera
+
+
+def _size(value: FloatArray | None) -> tuple[int, int] | None:
+    return None if value is None else (int(value[0]), int(value[1]))

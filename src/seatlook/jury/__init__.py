@@ -1,0 +1,1 @@
+"""Paired comparisons by people: plan, pictures, votes and their statistics."""

@@ -1,0 +1,120 @@
+"""What a panel compares: pictures of covers under code names, and pairs that nobody can mistake."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from seatlook.model import Appearance, Camera, Rig, Scene, Solution
+from seatlook.pbr import Image
+from seatlook.visibility.cross_check import Measures
+from seatlook.visibility.heights import amplified, peak_to_valley, reference_rig
+from seatlook.visibility.view import View, luminance
+from seatlook.visibility.vwi import score
+
+# A catch pair differs by 1 mm of wrinkles, or by as much more as makes it this visible.
+CATCH_HEIGHT = 0.001  # [m]
+CATCH_VWI = 10.0
+_HIGHEST = 0.032  # [m]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shown:
+    """One picture of a panel, with what the judges are not told.
+
+    Parameters
+    ----------
+    code : name on the page; says nothing
+    geometry : cover that it shows
+    measures : how visible its wrinkles are, for the calibration; None for a catch pair's
+    """
+
+    code: str
+    label: str
+    geometry: str
+    texture: str
+    rig: str
+    picture: Image
+    measures: Measures | None
+
+
+def shown_cells(scene: Scene, view: View, *, name: str, seed: int) -> Iterator[Shown]:
+    """Draw and score every texture of a scene under every rig, as seen by ``view``."""
+    for rig in scene.rigs:
+        for texture, looks in scene.textures.items():
+            sight = view.sight(looks, rig)
+            label = f"{name}, {texture}, {rig.name}"
+            yield Shown(
+                code=code_of(label, seed),
+                label=label,
+                geometry=name,
+                texture=texture,
+                rig=rig.name,
+                picture=sight.picture,
+                measures=sight.measures,
+            )
+
+
+def catch_pair(view: View, black: Appearance, rig: Rig, *, seed: int) -> tuple[Shown, Shown] | None:
+    """Draw black leather with its wrinkles raised beside the same without any.
+
+    Returns
+    -------
+    (wrinkled, smooth), or None where even 32 mm of this field under these lights do not reach a VWI
+    of 10, so that a judge could miss them
+    """
+    smooth = view.reference_studio.render(black, rig=rig, camera=view.camera, quality=view.quality)
+    height = CATCH_HEIGHT
+    while height <= _HIGHEST:
+        studio = view.studio_of(amplified(view, height / peak_to_valley(view)))
+        wrinkled = studio.render(black, rig=rig, camera=view.camera, quality=view.quality)
+        found = score(
+            luminance(wrinkled),
+            luminance(smooth),
+            pixels_per_degree=view.camera.pixels_per_degree,
+            mask=view.region.mask,
+        )
+        if found.vwi >= CATCH_VWI:
+            return (
+                _catch(f"wrinkles of {1e3 * height:g} mm", wrinkled, rig, seed),
+                _catch("no wrinkles", smooth, rig, seed),
+            )
+        # Visibility grows about linearly with height.
+        height *= 2 ** max(1, math.ceil(math.log2(CATCH_VWI / max(found.vwi, 1e-3))))
+    return None
+
+
+def catch_rigs(scene: Scene, camera: Camera) -> tuple[Rig, ...]:
+    """Lights of the catch pairs: the reference rig, and the scene's first."""
+    return (reference_rig(camera), scene.rigs[0])
+
+
+def panel_view(solution: Solution, camera: Camera, *, width: int) -> View:
+    """View for a panel: the camera's picture, cut to ``width`` pixels at the same scale."""
+    return View(solution, replace(camera, size=(min(width, camera.size[0]), camera.size[1])))
+
+
+def code_of(label: str, seed: int) -> str:
+    """Name that tells nothing, the same for the same label and seed.
+
+    Examples
+    --------
+    >>> code_of("demo, suede, sun", 1)
+    '8bf1e3'
+    """
+    return hashlib.sha256(f"{seed} {label}".encode()).hexdigest()[:6]
+
+
+def _catch(what: str, picture: Image, rig: Rig, seed: int) -> Shown:
+    label = f"catch, {what}, {rig.name}"
+    return Shown(
+        code=code_of(label, seed),
+        label=label,
+        geometry="",
+        texture="black leather",
+        rig=rig.name,
+        picture=picture,
+        measures=None,
+    )

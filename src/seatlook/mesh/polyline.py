@@ -1,0 +1,53 @@
+"""Open polylines as arrays: lengths along them, distances to them."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from seatlook.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def distance_to_polyline(points: FloatArray, line: FloatArray) -> FloatArray:
+    """Distance (m,) of points (m, 2) to an open polyline (k, 2), in its unit.
+
+    Examples
+    --------
+    >>> distance_to_polyline(np.array([[0.5, 1.0], [2.0, 0.0]]), np.array([[0.0, 0], [1, 0]]))
+    array([1., 1.])
+    """
+    start, step = line[:-1], np.diff(line, axis=0)
+    offset = points[:, None] - start
+    length2 = np.maximum((step**2).sum(axis=1), 1e-300)
+    along = np.clip((offset * step).sum(axis=2) / length2, 0.0, 1.0)
+    gap = offset - along[..., None] * step
+    return np.asarray(np.sqrt((gap**2).sum(axis=2)).min(axis=1))
+
+
+def arc_length(polyline: FloatArray) -> FloatArray:
+    """Return the length run through (k,) [m] at each point of an open polyline (k, d)."""
+    steps = np.linalg.norm(np.diff(polyline, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def resample(polyline: FloatArray, spacing: float) -> FloatArray:
+    """Return points of equal arc length on an open polyline (k, d), both ends kept.
+
+    The step is the length divided by the nearest whole number of ``spacing`` (at least one).
+
+    Examples
+    --------
+    >>> resample(np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]]), 0.9)[:, 0]
+    array([0., 1., 2., 3., 3.])
+    """
+    s = arc_length(polyline)
+    if not (spacing > 0 and s[-1] > 0):
+        raise InputError.single(
+            "resample", got=f"length {s[-1]:g}, spacing {spacing:g}", expected="numbers above 0"
+        )
+    at = np.linspace(0.0, s[-1], max(1, round(s[-1] / spacing)) + 1)
+    points = np.column_stack([np.interp(at, s, column) for column in polyline.T])
+    points[[0, -1]] = polyline[[0, -1]]  # bit for bit, so that neighbours share their corners
+    return points

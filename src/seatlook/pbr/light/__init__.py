@@ -1,0 +1,1 @@
+"""Lights as the renderer takes them, skies, and the exposure of a rig."""

@@ -1,0 +1,1 @@
+"""Pictures of values on the cover, and quick previews of its shape."""

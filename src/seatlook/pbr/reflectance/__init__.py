@@ -1,0 +1,1 @@
+"""What surfaces reflect: BRDF, tables, relief by formula and measured maps."""

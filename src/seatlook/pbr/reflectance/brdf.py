@@ -1,0 +1,184 @@
+"""The BRDF on arrays: the reference that the compiled terms and a path tracer must agree with.
+
+A stack, from the top: clear coat, nap (sheen), a GGX base whose colour mixes dielectric and
+metal, and the diffuse light that gets through all of them. Each layer hands on only what it has
+not reflected, in both directions, so the whole is reciprocal and never gives back more than it
+gets. Cosines are ``NoL``, ``NoV``, ``NoH``, ``LoH``; T is the warp and B the weft direction.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from seatlook.model import Appearance, FloatArray
+from seatlook.pbr.reflectance.tables import load_tables
+from seatlook.pbr.shading.kernels.brdf import COAT_F0, MIN_ALPHA
+from seatlook.pbr.shading.kernels.lookup import ROUGHNESS_LOW
+
+
+def D_GGX(alpha_x: float, alpha_y: float, h: FloatArray) -> FloatArray:
+    """Burley 2012, eq. 13: anisotropic GGX; Walter et al. 2007 where both alphas agree."""
+    d = (h[..., 0] / alpha_x) ** 2 + (h[..., 1] / alpha_y) ** 2 + h[..., 2] ** 2
+    return np.asarray(1 / (np.pi * alpha_x * alpha_y * d**2))
+
+
+def V_SmithGGXCorrelated(
+    alpha_x: float, alpha_y: float, v: FloatArray, l: FloatArray
+) -> FloatArray:
+    """Heitz 2014, eq. 99: height-correlated masking over 4 NoL NoV, with the alpha of D."""
+    scale = np.array([alpha_x, alpha_y, 1.0])
+    view = l[..., 2] * np.linalg.norm(scale * v, axis=-1)
+    light = v[..., 2] * np.linalg.norm(scale * l, axis=-1)
+    return np.asarray(0.5 / (view + light))
+
+
+def F_Schlick(f0: FloatArray, f90: FloatArray, LoH: FloatArray) -> FloatArray:
+    """Schlick 1994, eq. 15."""
+    return f0 + (f90 - f0) * (1 - LoH) ** 5
+
+
+def F90(f0: FloatArray) -> FloatArray:
+    """Lagarde and de Rousiers 2014: below 2 % the reflectance is taken for cavities."""
+    return np.minimum(1.0, 50 * f0)
+
+
+def F_multiple(f0: FloatArray, f90: FloatArray, mean: float) -> FloatArray:
+    """Hill 2018 after Kulla and Conty 2017: colour of light reflected two times or more."""
+    average = f0 + (f90 - f0) / 21
+    return average**2 * mean / (1 - average * (1 - mean))
+
+
+def D_Charlie(alpha: float, NoH: FloatArray) -> FloatArray:
+    """Estevez and Kulla 2017, eq. 2: inverted Gaussian of fibres that stand up."""
+    return (2 + 1 / alpha) * (1 - NoH**2) ** (0.5 / alpha) / (2 * np.pi)
+
+
+def V_Neubelt(NoV: FloatArray, NoL: FloatArray) -> FloatArray:
+    """Neubelt and Pettineo 2013: no masking, smooth denominator."""
+    return 1 / (4 * (NoL + NoV - NoL * NoV))
+
+
+def lookup(table: FloatArray, roughness: float, mu: FloatArray) -> FloatArray:
+    """Bilinear value of a table at roughness and cosine."""
+    i, a = _cell(np.asarray(roughness), ROUGHNESS_LOW, table.shape[0])
+    j, b = _cell(np.sqrt(mu), 0.0, table.shape[1])
+    below = (1 - b) * table[i, j] + b * table[i, j + 1]
+    above = (1 - b) * table[i + 1, j] + b * table[i + 1, j + 1]
+    return np.asarray((1 - a) * below + a * above)
+
+
+def E_mean(roughness: float) -> float:
+    """Hemisphere mean of the albedo of a lobe with F = 1."""
+    t = load_tables()
+    i, a = _cell(np.asarray(roughness), ROUGHNESS_LOW, len(t.scale_mean))
+    mean = t.scale_mean + t.bias_mean
+    return float((1 - a) * mean[i] + a * mean[i + 1])
+
+
+def E_lost(roughness: float, mu: FloatArray) -> FloatArray:
+    """Kulla and Conty 2017: share of a lobe with F = 1 that needs more than one bounce."""
+    t = load_tables()
+    return 1 - lookup(t.scale, roughness, mu) - lookup(t.bias, roughness, mu)
+
+
+def E_GGX(roughness: float, mu: FloatArray, f0: FloatArray, f90: FloatArray) -> FloatArray:
+    """Kulla and Conty 2017: reflected share of one GGX lobe with all its bounces."""
+    t = load_tables()
+    single = f0 * lookup(t.scale, roughness, mu) + f90 * lookup(t.bias, roughness, mu)
+    return single + F_multiple(f0, f90, E_mean(roughness)) * E_lost(roughness, mu)
+
+
+def alphas(appearance: Appearance) -> tuple[float, float]:
+    """Kulla and Conty 2017: width of the lobe along and across the warp."""
+    a = appearance.roughness**2
+    return (
+        max(a * (1 + appearance.anisotropy), MIN_ALPHA),
+        max(a * (1 - appearance.anisotropy), MIN_ALPHA),
+    )
+
+
+def coat_share(appearance: Appearance) -> float:
+    """How much of a surface is lacquered: no metal is."""
+    return appearance.coat * max(0.0, 1 - 2 * appearance.metalness)
+
+
+def passed(appearance: Appearance, mu: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Light left at one direction: (below the coat, below coat and nap, to the diffuse base)."""
+    a, one = appearance, np.ones(())
+    coat = 1 - coat_share(a) * E_GGX(a.coat_roughness, mu, COAT_F0 * one, one)
+    strongest = float(a.sheen.max()) * (1 - a.metalness)
+    nap = coat * (1 - strongest * lookup(load_tables().sheen, a.sheen_roughness, mu))
+    f0 = np.asarray(a.f0)
+    base = nap * (1 - E_GGX(np.sqrt(min(alphas(a))), mu, f0, F90(f0)))
+    return coat, nap, base
+
+
+def coupling(appearance: Appearance) -> float:
+    """Hemisphere mean of what reaches the diffuse base, by the midpoint rule in sqrt(mu)."""
+    s = (np.arange(256) + 0.5) / 256
+    return float(4 * (passed(appearance, s**2)[2] * s**3).mean())
+
+
+def specular(
+    roughness: tuple[float, float], v: FloatArray, l: FloatArray, f0: FloatArray, f90: FloatArray
+) -> FloatArray:
+    """GGX lobe with all its bounces [1/sr], (..., 3); ``roughness``: the two alphas."""
+    h = v + l
+    h = h / np.linalg.norm(h, axis=-1, keepdims=True)
+    single = D_GGX(*roughness, h) * V_SmithGGXCorrelated(*roughness, v, l)
+    LoH = np.minimum(1.0, (l * h).sum(axis=-1))
+    narrow = np.sqrt(min(roughness))
+    mean = E_mean(narrow)
+    again = E_lost(narrow, v[..., 2]) * E_lost(narrow, l[..., 2]) / (np.pi * (1 - mean))
+    fresnel = F_Schlick(f0, f90, LoH[..., None])
+    return fresnel * single[..., None] + F_multiple(f0, f90, mean) * again[..., None]
+
+
+def evaluate(appearance: Appearance, v: FloatArray, l: FloatArray) -> FloatArray:
+    """BRDF [1/sr] of a plain surface.
+
+    Parameters
+    ----------
+    v, l : (..., 3) float64    unit vectors to eye and light in the frame (warp, weft, normal),
+        third component above 0
+
+    Returns
+    -------
+    (..., 3) float64, linear sRGB
+
+    Examples
+    --------
+    >>> up = np.array([0.0, 0.0, 1.0])
+    >>> grey = Appearance(albedo=np.full(3, 0.18), f0=0.0)
+    >>> bool(np.allclose(np.pi * evaluate(grey, up, up), 0.18))
+    True
+    """
+    a, m = appearance, appearance.metalness
+    coat_v, nap_v, base_v = passed(a, v[..., 2])
+    coat_l, nap_l, base_l = passed(a, l[..., 2])
+    f0 = (1 - m) * a.f0 + m * a.albedo
+    f90 = (1 - m) * F90(np.asarray(a.f0)) + m * F90(a.albedo)
+    base = np.minimum(nap_v, nap_l)[..., None] * specular(alphas(a), v, l, f0, f90)
+    diffuse = (1 - m) * a.albedo * (base_v * base_l / (np.pi * coupling(a)))[..., None]
+    nap = np.minimum(coat_v, coat_l)[..., None] * (1 - m) * a.sheen * sheen(a, v, l)[..., None]
+    alpha = a.coat_roughness**2
+    coat = coat_share(a) * specular((alpha, alpha), v, l, np.full(3, COAT_F0), np.ones(3))
+    return np.asarray(base + diffuse + nap + coat)
+
+
+def sheen(appearance: Appearance, v: FloatArray, l: FloatArray) -> FloatArray:
+    """Lobe of a white nap [1/sr], scaled so that its albedo stays below 1."""
+    h = v + l
+    NoH = np.minimum(1.0, h[..., 2] / np.linalg.norm(h, axis=-1))
+    t = load_tables()
+    i, a = _cell(np.asarray(appearance.sheen_roughness), ROUGHNESS_LOW, len(t.sheen_norm))
+    norm = (1 - a) * t.sheen_norm[i] + a * t.sheen_norm[i + 1]
+    lobe = D_Charlie(appearance.sheen_roughness**2, NoH) * V_Neubelt(v[..., 2], l[..., 2])
+    return np.asarray(norm * lobe)
+
+
+def _cell(value: FloatArray, low: float, n: int) -> tuple[FloatArray, FloatArray]:
+    """Index and weight for linear interpolation on ``n`` even nodes from ``low`` to 1."""
+    x = np.clip((value - low) / (1 - low) * (n - 1), 0.0, n - 1.0)
+    i = np.minimum(x.astype(np.int64), n - 2)
+    return i, x - i

@@ -1,0 +1,71 @@
+"""The foam as it is drawn: pressed below the cover, with its edges kept sharp."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from seatlook.model import Appearance, FloatArray, Foam, IntArray
+from seatlook.pbr.shading.kernels.surface import Mesh
+
+# Open-cell polyether, cream; judgement.
+FOAM = Appearance(albedo=np.array([0.62, 0.57, 0.42]), roughness=0.95, f0=0.02)
+
+# The foam lies this far [m] below the cover, wherever the cover is this near.
+_BELOW, _NEAR = 0.003, 0.03
+# Faces whose normals differ by more than 40 degrees meet in an edge.
+_EDGE_COSINE = np.cos(np.radians(40.0))
+
+
+def pressed(foam: Foam, cover: FloatArray, normals: FloatArray) -> FloatArray:
+    """Foam vertices (n, 3) moved inward to where the solved cover (k, 3) has pressed them.
+
+    The stored foam is at rest: drawn as it is, it would stick out of the cover that it carries.
+    """
+    x = np.array(foam.vertices)
+    distance, nearest = KDTree(cover).query(x)
+    n = normals[nearest]
+    out = ((x - cover[nearest]) * n).sum(axis=1) + _BELOW
+    move = np.where((distance < _NEAR) & (out > 0), out, 0.0)
+    return np.asarray(x - move[:, None] * n)
+
+
+def corner_normals(x: FloatArray, faces: IntArray) -> FloatArray:
+    """Unit normals (3 m, 3) of all face corners, area-weighted over the faces on the same side."""
+    a, b, c = (x[faces[:, k]] for k in range(3))
+    area = np.cross(b - a, c - a)
+    unit = area / np.maximum(np.linalg.norm(area, axis=1, keepdims=True), 1e-30)
+    corner = faces.ravel()
+    order = np.argsort(corner, kind="stable")
+    count = np.bincount(corner, minlength=len(x))
+    start = np.cumsum(count) - count
+    # Every corner against every corner at the same vertex.
+    left = np.repeat(order, count[corner[order]])
+    run = np.cumsum(count[corner[order]]) - count[corner[order]]
+    right = order[start[corner[left]] + np.arange(len(left)) - np.repeat(run, count[corner[order]])]
+    same = (unit[left // 3] * unit[right // 3]).sum(axis=1) > _EDGE_COSINE
+    share = area[right[same] // 3]
+    n = np.column_stack(
+        [np.bincount(left[same], share[:, k], minlength=3 * len(faces)) for k in range(3)]
+    )
+    length = np.linalg.norm(n, axis=1, keepdims=True)
+    return np.where(length > 0, n / np.maximum(length, 1e-30), (0.0, 0.0, 1.0))
+
+
+def with_foam(mesh: Mesh, foam: Foam, panel: int, *, cover: int) -> Mesh:
+    """Mesh with the foam's faces behind its own; every corner gets a vertex.
+
+    The first ``cover`` vertices press on the foam, the seam allowance behind them does not.
+    """
+    faces = np.array(foam.faces)
+    x = pressed(foam, mesh.vertices[:cover], mesh.normals[:cover])
+    n, k = len(mesh.vertices), faces.size
+    return Mesh(
+        np.vstack([mesh.vertices, x[faces.ravel()]]),
+        np.vstack([mesh.normals, corner_normals(x, faces)]),
+        np.vstack([mesh.warp, np.zeros((k, 3))]),
+        np.vstack([mesh.uv, np.zeros((k, 2))]),
+        np.vstack([mesh.faces, n + np.arange(k).reshape(-1, 3)]),
+        np.concatenate([mesh.panel, np.full(len(faces), panel)]),
+        np.vstack([mesh.seam, np.full((k, 2), np.inf)]),
+    )

@@ -1,0 +1,386 @@
+"""The BRDF on scalars: same terms, names and order as ``seatlook.pbr.reflectance.brdf``."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from seatlook.pbr.shading.kernels import leaf
+from seatlook.pbr.shading.kernels.lookup import ROUGHNESS_LOW, bilinear, cell, lookup, lookup_mean
+
+MIN_ALPHA = ROUGHNESS_LOW**2
+COAT_F0 = 0.04
+
+MATERIAL = np.dtype(
+    [
+        ("albedo", np.float64, 3),
+        ("metalness", np.float64),
+        ("roughness", np.float64),
+        ("f0", np.float64),
+        ("sheen", np.float64, 3),
+        ("sheen_roughness", np.float64),
+        ("coat", np.float64),
+        ("coat_roughness", np.float64),
+        ("anisotropy", np.float64),
+        ("texture", np.int64),
+        ("texture_scale", np.float64),
+        ("texture_depth", np.float64),
+        ("perforation_pitch", np.float64),
+        ("perforation_diameter", np.float64),
+        ("maps", np.int64),
+    ]
+)
+
+
+class Tables(NamedTuple):
+    """Directional albedos over roughness (rows) and sqrt(mu) (columns), and their averages.
+
+    ``scale, bias`` (k, n): GGX for F = F0 scale + F90 bias; ``sheen`` (k, n): Charlie, multiplied
+    by ``sheen_norm`` (k,) so that it stays below 1; ``*_mean`` (k,): the same averaged over the
+    cosine-weighted hemisphere.
+    """
+
+    scale: npt.NDArray[np.float64]
+    bias: npt.NDArray[np.float64]
+    sheen: npt.NDArray[np.float64]
+    scale_mean: npt.NDArray[np.float64]
+    bias_mean: npt.NDArray[np.float64]
+    sheen_norm: npt.NDArray[np.float64]
+
+
+@leaf()
+def D_GGX(alpha_x, alpha_y, ToH, BoH, NoH):
+    """Burley 2012, eq. 13: anisotropic GGX; Walter et al. 2007 where both alphas agree."""
+    d = (ToH / alpha_x) ** 2 + (BoH / alpha_y) ** 2 + NoH * NoH
+    return 1.0 / (np.pi * alpha_x * alpha_y * d * d)
+
+
+@leaf()
+def V_SmithGGXCorrelated(alpha_x, alpha_y, ToV, BoV, NoV, ToL, BoL, NoL):
+    """Heitz 2014, eq. 99: height-correlated masking over 4 NoL NoV, with the alpha of D."""
+    view = NoL * np.sqrt((alpha_x * ToV) ** 2 + (alpha_y * BoV) ** 2 + NoV * NoV)
+    light = NoV * np.sqrt((alpha_x * ToL) ** 2 + (alpha_y * BoL) ** 2 + NoL * NoL)
+    return 0.5 / (view + light)
+
+
+@leaf()
+def GGX_stretched(ax, ay, view, ToL, BoL, NoL, ToH, BoH, NoH):
+    """Product of both terms above, seen along ``view``, with one division."""
+    x, y, z = ay * ToH, ax * BoH, ax * ay * NoH
+    d = x * x + y * y + z * z
+    x, y = ax * view.ToV, ay * view.BoV
+    seen = NoL * np.sqrt(x * x + y * y + view.NoV * view.NoV)
+    x, y = ax * ToL, ay * BoL
+    lit = view.NoV * np.sqrt(x * x + y * y + NoL * NoL)
+    both = ax * ay
+    return both * both * both / (2.0 * np.pi * d * d * (seen + lit))
+
+
+class Lobe(NamedTuple):
+    """GGX lobe whose half-vectors are spread: squared width, and strength of what that bends.
+
+    See ``lobe_of``.
+    """
+
+    squared: float
+    bent: float
+
+
+@leaf()
+def lobe_of(alpha, more):
+    """Lobe of width ``alpha`` seen over half-vectors that vary by ``more``, per axis ``more / 2``.
+
+    A GGX lobe that is only wider has brighter tails, in proportion to its squared width; those of
+    a mean over a small disc or facet stay as they are. Exact to first order in ``more``.
+    """
+    a2 = alpha * alpha
+    b2 = a2 + more
+    return Lobe(b2, more * a2 / (b2 * b2))
+
+
+@leaf()
+def GGX(lobe, NoV, NoL, NoH):
+    """The same for a lobe as wide along as across, by the cosines alone."""
+    b2, sine2 = lobe.squared, 1.0 - NoH * NoH
+    inverse = 1.0 / (b2 + (1.0 - b2) * sine2)
+    # Share of the half-vectors that lie closer to the normal.
+    t = sine2 * inverse
+    view = NoL * np.sqrt(b2 + (1.0 - b2) * NoV * NoV)
+    light = NoV * np.sqrt(b2 + (1.0 - b2) * NoL * NoL)
+    bent = 1.0 + lobe.bent * (6.0 * t * (1.0 - t) - 1.0)
+    return bent * b2 * inverse * inverse / (2.0 * np.pi * (view + light))
+
+
+@leaf()
+def F_Schlick(f0, f90, LoH):
+    """Schlick 1994, eq. 15."""
+    m = 1.0 - LoH
+    m2 = m * m
+    return f0 + (f90 - f0) * m2 * m2 * m
+
+
+@leaf()
+def D_Charlie(alpha, NoH):
+    """Estevez and Kulla 2017, eq. 2: inverted Gaussian of fibres that stand up."""
+    inverse = 1.0 / alpha
+    return (2.0 + inverse) * (1.0 - NoH * NoH) ** (0.5 * inverse) / (2.0 * np.pi)
+
+
+@leaf()
+def D_nap(fibres, sine):
+    """Distribution of the nap at the sine of a half-vector, see ``tables.fibres``."""
+    x = sine * (len(fibres) - 1)
+    j = min(int(x), len(fibres) - 2)
+    return fibres[j] + (x - j) * (fibres[j + 1] - fibres[j])
+
+
+@leaf()
+def V_Neubelt(NoV, NoL):
+    """Neubelt and Pettineo 2013: no masking, smooth denominator."""
+    return 1.0 / (4.0 * (NoL + NoV - NoL * NoV))
+
+
+@leaf()
+def F90(f0):
+    """Lagarde and de Rousiers 2014: below 2 % the reflectance is taken for cavities."""
+    return min(1.0, 50.0 * f0)
+
+
+@leaf()
+def F_multiple(f0, f90, mean):
+    """Hill 2018 after Kulla and Conty 2017: colour of light reflected two times or more."""
+    average = f0 + (f90 - f0) / 21.0
+    return average * average * mean / (1.0 - average * (1.0 - mean))
+
+
+@leaf()
+def E_mean(tables, roughness):
+    """Hemisphere mean of the albedo of a lobe with F = 1."""
+    return lookup_mean(tables.scale_mean, roughness) + lookup_mean(tables.bias_mean, roughness)
+
+
+@leaf()
+def coat_share(material):
+    """How much of a surface is lacquered: no metal is."""
+    return material.coat * max(0.0, 1.0 - 2.0 * material.metalness)
+
+
+@leaf()
+def sheen_share(material):
+    """Strength of the nap's strongest colour; metal has no nap."""
+    strongest = max(material.sheen[0], material.sheen[1], material.sheen[2])
+    return strongest * (1.0 - material.metalness)
+
+
+class Means(NamedTuple):
+    """Hemisphere means of base and coat, and the share that their repeated bounces keep."""
+
+    base: float
+    again: float
+    coat: float
+    coat_again: float
+
+
+@leaf()
+def means_of(tables, material, roughness):
+    """Means at the base's roughness."""
+    base, coat, coat_again = E_mean(tables, roughness), 1.0, 0.0
+    if coat_share(material) > 0.0:
+        coat = E_mean(tables, material.coat_roughness)
+        coat_again = F_multiple(COAT_F0, 1.0, coat)
+    return Means(base, F_multiple(material.f0, F90(material.f0), base), coat, coat_again)
+
+
+class Layers(NamedTuple):
+    """What happens to light at one direction.
+
+    ``scale, bias``: albedo of the base's lobe; ``coat_lost``: share that the coat's lobe reflects
+    more than once; ``coat, nap, base``: light left below the coat, below coat and nap, and for the
+    diffuse base.
+    """
+
+    scale: float
+    bias: float
+    coat_lost: float
+    coat: float
+    nap: float
+    base: float
+
+
+class Rows(NamedTuple):
+    """Where a surface point lies on the tables' axis of roughness: index and weight, per lobe."""
+
+    base: tuple[int, float]
+    coat: tuple[int, float]
+    nap: tuple[int, float]
+
+
+@leaf()
+def rows_of(tables, material, roughness):
+    """Rows for the base's roughness and the material's coat and nap."""
+    n = tables.scale.shape[0]
+    return Rows(
+        cell(roughness, ROUGHNESS_LOW, 1.0, n),
+        cell(material.coat_roughness, ROUGHNESS_LOW, 1.0, n),
+        cell(material.sheen_roughness, ROUGHNESS_LOW, 1.0, n),
+    )
+
+
+@leaf()
+def layers_at(tables, material, rows, means, mu):
+    """Layers at cosine ``mu``."""
+    j, b = cell(np.sqrt(mu), 0.0, 1.0, tables.scale.shape[1])
+    i, a = rows.base
+    scale, bias = bilinear(tables.scale, i, a, j, b), bilinear(tables.bias, i, a, j, b)
+    coat, nap, lost = 1.0, 1.0, 0.0
+    share = coat_share(material)
+    if share > 0.0:
+        i, a = rows.coat
+        low, high = bilinear(tables.scale, i, a, j, b), bilinear(tables.bias, i, a, j, b)
+        lost = 1.0 - low - high
+        coat -= share * (COAT_F0 * low + high + means.coat_again * lost)
+    share = sheen_share(material)
+    if share > 0.0:
+        i, a = rows.nap
+        nap -= share * bilinear(tables.sheen, i, a, j, b)
+    nap *= coat
+    f0 = material.f0
+    reflected = f0 * scale + F90(f0) * bias + means.again * (1.0 - scale - bias)
+    return Layers(scale, bias, lost, coat, nap, nap * (1.0 - reflected))
+
+
+@leaf()
+def alphas(roughness, anisotropy):
+    """Kulla and Conty 2017: width of the lobe along and across the warp."""
+    a = roughness * roughness
+    return max(a * (1.0 + anisotropy), MIN_ALPHA), max(a * (1.0 - anisotropy), MIN_ALPHA)
+
+
+class View(NamedTuple):
+    """What the BRDF needs of one surface point and view, whatever the light.
+
+    ``table_roughness``: of the narrower axis, so that energy added back is never too much;
+    ``f0, f90, again``: of the base's lobe, per channel.
+    """
+
+    ToV: float
+    BoV: float
+    NoV: float
+    alpha_x: float
+    alpha_y: float
+    table_roughness: float
+    rows: Rows
+    means: Means
+    layers: Layers
+    colour: tuple[float, float, float]
+    f0: tuple[float, float, float]
+    f90: tuple[float, float, float]
+    again: tuple[float, float, float]
+
+
+@leaf()
+def view_of(tables, material, roughness, colour, ToV, BoV, NoV):
+    """View of a point with a base colour."""
+    ax, ay = alphas(roughness, material.anisotropy)
+    narrow = np.sqrt(min(ax, ay))
+    means = means_of(tables, material, narrow)
+    rows = rows_of(tables, material, narrow)
+    layers = layers_at(tables, material, rows, means, NoV)
+    m, f0, mean = material.metalness, material.f0, means.base
+    # Dielectric and metal in linear mixture, so energy mixes too.
+    if m == 0.0:
+        low, high = (f0, f0, f0), (F90(f0), F90(f0), F90(f0))
+        again = (means.again, means.again, means.again)
+        return View(ToV, BoV, NoV, ax, ay, narrow, rows, means, layers, colour, low, high, again)
+    r, g, b = colour
+    low = ((1.0 - m) * f0 + m * r, (1.0 - m) * f0 + m * g, (1.0 - m) * f0 + m * b)
+    f90 = (1.0 - m) * F90(f0)
+    high = (f90 + m * F90(r), f90 + m * F90(g), f90 + m * F90(b))
+    again = (
+        F_multiple(low[0], high[0], mean),
+        F_multiple(low[1], high[1], mean),
+        F_multiple(low[2], high[2], mean),
+    )
+    return View(ToV, BoV, NoV, ax, ay, narrow, rows, means, layers, colour, low, high, again)
+
+
+@leaf()
+def widened(alpha, more):
+    """Width of a lobe whose slopes vary by ``more`` in addition."""
+    return np.sqrt(alpha * alpha + more) if more > 1e-3 * alpha * alpha else alpha
+
+
+@leaf()
+def brdf(tables, material, fibres, coupling, view, wider, ToL, BoL, NoL, out):
+    """BRDF [1/sr] into ``out`` (3,); both cosines above 0.
+
+    ``fibres``: the material's, see ``tables``; ``coupling``: mean of what reaches the diffuse base
+    at this roughness; ``wider``: added to the squared width of the lobes, for a light that is not
+    a point.
+    """
+    x, y, z = view.ToV + ToL, view.BoV + BoL, view.NoV + NoL
+    inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
+    ToH, BoH, NoH = x * inverse, y * inverse, z * inverse
+    LoH = min(1.0, ToL * ToH + BoL * BoH + NoL * NoH)
+    ax, ay = widened(view.alpha_x, wider), widened(view.alpha_y, wider)
+    lobe = GGX_stretched(ax, ay, view, ToL, BoL, NoL, ToH, BoH, NoH)
+    _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, LoH, out)
+
+
+@leaf()
+def brdf_isotropic(tables, material, fibres, coupling, view, wider, NoL, NoH, LoH, out):
+    """Same where the lobe is as wide along as across, by the cosines alone."""
+    lobe = GGX(lobe_of(view.alpha_x, wider), view.NoV, NoL, NoH)
+    _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, LoH, out)
+
+
+@leaf()
+def _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, LoH, out):
+    here, there = view.layers, layers_at(tables, material, view.rows, view.means, NoL)
+    lost = (1.0 - here.scale - here.bias) * (1.0 - there.scale - there.bias)
+    lost /= np.pi * (1.0 - view.means.base)
+    diffuse = (1.0 - material.metalness) * here.base * there.base / (np.pi * coupling)
+    nap = min(here.nap, there.nap)
+    m = 1.0 - LoH
+    m *= m * m * m * m
+    for c in range(3):
+        fresnel = view.f0[c] + (view.f90[c] - view.f0[c]) * m
+        out[c] = nap * (fresnel * lobe + view.again[c] * lost) + view.colour[c] * diffuse
+    if sheen_share(material) > 0.0:
+        _add_sheen(material, fibres, min(here.coat, there.coat), view.NoV, NoL, NoH, out)
+    share = coat_share(material)
+    if share > 0.0:
+        lobe = GGX(lobe_of(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
+        again = here.coat_lost * there.coat_lost / (np.pi * (1.0 - view.means.coat))
+        coat = share * ((COAT_F0 + (1.0 - COAT_F0) * m) * lobe + view.means.coat_again * again)
+        for c in range(3):
+            out[c] += coat
+
+
+@leaf()
+def _add_sheen(material, fibres, share, NoV, NoL, NoH, out):
+    lobe = D_nap(fibres, np.sqrt(max(0.0, 1.0 - NoH * NoH))) * V_Neubelt(NoV, NoL)
+    lobe *= share * (1.0 - material.metalness)
+    for c in range(3):
+        out[c] += material.sheen[c] * lobe
+
+
+@leaf()
+def albedo_towards(tables, material, view, specular, diffuse):
+    """Share of a light equal from everywhere that leaves towards the view.
+
+    Into ``specular`` (3,): by the base's lobe; into ``diffuse`` (3,): by nap and diffuse base.
+    Returns the coat's share.
+    """
+    here, metal, sheen = view.layers, material.metalness, 0.0
+    if sheen_share(material) > 0.0:
+        sheen = here.coat * (1.0 - metal)
+        sheen *= lookup(tables.sheen, material.sheen_roughness, view.NoV)
+    lost = 1.0 - here.scale - here.bias
+    for c in range(3):
+        lobe = view.f0[c] * here.scale + view.f90[c] * here.bias + view.again[c] * lost
+        specular[c] = here.nap * lobe
+        diffuse[c] = (1.0 - metal) * view.colour[c] * here.base + sheen * material.sheen[c]
+    return 1.0 - here.coat

@@ -1,0 +1,41 @@
+"""Tables of directional albedos, and what lies between their nodes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from seatlook.pbr.shading.kernels import leaf
+
+ROUGHNESS_LOW = 0.08
+
+
+@leaf()
+def cell(value, low, high, n):
+    """Index and weight for linear interpolation on ``n`` even nodes."""
+    x = (value - low) * ((n - 1.0) * (1.0 / (high - low)))
+    x = min(max(x, 0.0), n - 1.0)
+    i = min(int(x), n - 2)
+    return i, x - i
+
+
+@leaf()
+def bilinear(table, i, a, j, b):
+    """Value between four nodes, by the indices and weights of ``cell``."""
+    below = table[i, j] + b * (table[i, j + 1] - table[i, j])
+    above = table[i + 1, j] + b * (table[i + 1, j + 1] - table[i + 1, j])
+    return below + a * (above - below)
+
+
+@leaf()
+def lookup(table, roughness, mu):
+    """Bilinear value of a table at roughness and cosine."""
+    i, a = cell(roughness, ROUGHNESS_LOW, 1.0, table.shape[0])
+    j, b = cell(np.sqrt(mu), 0.0, 1.0, table.shape[1])
+    return bilinear(table, i, a, j, b)
+
+
+@leaf()
+def lookup_mean(table, roughness):
+    """Linear value of a table over roughness alone."""
+    i, a = cell(roughness, ROUGHNESS_LOW, 1.0, table.shape[0])
+    return table[i] + a * (table[i + 1] - table[i])

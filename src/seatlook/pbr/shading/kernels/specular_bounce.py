@@ -1,0 +1,218 @@
+"""What the cover sends to its own vertices, and what the lobe of a reflection sees from there."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from seatlook.pbr.shading.kernels import leaf
+from seatlook.pbr.shading.kernels.brdf import (
+    COAT_F0,
+    GGX,
+    MIN_ALPHA,
+    F_Schlick,
+    albedo_towards,
+    brdf,
+    coat_share,
+    lobe_of,
+    view_of,
+)
+from seatlook.pbr.shading.kernels.bvh import new_stack
+from seatlook.pbr.shading.kernels.light import above_horizon, across, angle_of, arriving
+from seatlook.pbr.shading.kernels.noise import even
+from seatlook.pbr.shading.kernels.rays import ABOVE, DARK, OPEN, UNSENT, direction, face_met
+from seatlook.pbr.shading.kernels.shade import frame, towards_eye
+from seatlook.pbr.shading.kernels.surface import along, blend, cross, dot, minus, row, row_of, unit
+from seatlook.pbr.shading.kernels.tables import coupling_at
+
+# Widths (alpha) of the lobes along which rays go, whatever the material: polish and grain.
+_WIDTHS = (0.1, 0.35)
+# Squared width by which rays of one per solid angle widen the lobes they meet: that of a disc as
+# large, four times for the curvature of what they meet.
+_BLUR = 4 * 0.125 / np.pi
+
+
+@leaf()
+def _visible_normal(alpha, x, z, a, b):
+    """Heitz 2018: half-vector of a GGX lobe among those seen along (x, 0, z), for (a, b) in 1."""
+    v = unit((alpha * x, 0.0, z))
+    r, phi = np.sqrt(a), 2.0 * np.pi * b
+    t1, t2 = r * np.cos(phi), r * np.sin(phi)
+    s = 0.5 * (1.0 + v[2])
+    t2 = (1.0 - s) * np.sqrt(1.0 - t1 * t1) + s * t2
+    up = np.sqrt(max(0.0, 1.0 - t1 * t1 - t2 * t2))
+    # The second axis across v is y, the first one (-z, 0, x).
+    h = (up * v[0] - t2 * v[2], t1, up * v[2] + t2 * v[0])
+    return unit((alpha * h[0], alpha * h[1], max(1e-6, h[2])))
+
+
+@leaf()
+def _lobe(i, q, strata, n, v):
+    """Ray q from vertex i: unit direction mirrored at the half-vectors of one width."""
+    NoV = dot(n, v)
+    t = along(v, -NoV, n)
+    side = np.sqrt(dot(t, t))
+    t = across(n)[0] if side < 1e-6 else (t[0] / side, t[1] / side, t[2] / side)
+    s = cross(n, t)
+    width, cell = q // (strata * strata), q % (strata * strata)
+    a = (cell // strata + even(i, 2, width)) / strata
+    b = (cell % strata + even(i, 3, width)) / strata
+    alpha = _WIDTHS[0] if width == 0 else _WIDTHS[1]
+    h = _visible_normal(alpha, side, NoV, a, b)
+    d = 2.0 * (h[0] * side + h[2] * NoV)
+    x, y, z = d * h[0] - side, d * h[1], d * h[2] - NoV
+    return along(along((z * n[0], z * n[1], z * n[2]), x, t), y, s)
+
+
+@leaf()
+def _density(NoV, NoH):
+    """Probability of a ray of ``_lobe`` per solid angle, over all widths."""
+    total = 0.0
+    for alpha in _WIDTHS:
+        d = NoH * NoH * (alpha * alpha - 1.0) + 1.0
+        view = NoV + np.sqrt(alpha * alpha + (1.0 - alpha * alpha) * NoV * NoV)
+        total += alpha * alpha / (np.pi * d * d) * 0.5 / view
+    return total / len(_WIDTHS)
+
+
+@leaf()
+def _reflectance(material, n, v, d):
+    """What base and coat reflect of light from ``d`` towards ``v``, but for bounces in them."""
+    h = unit(along(v, 1.0, d))
+    NoV, NoL, NoH, LoH = dot(n, v), dot(n, d), min(1.0, dot(n, h)), min(1.0, dot(d, h))
+    metal, f0 = material.metalness, material.f0
+    f0 += metal * ((material.albedo[0] + material.albedo[1] + material.albedo[2]) / 3.0 - f0)
+    value = F_Schlick(f0, min(1.0, 50.0 * f0), LoH) * GGX(
+        lobe_of(max(material.roughness**2, MIN_ALPHA), 0.0), NoV, NoL, NoH
+    )
+    share = coat_share(material)
+    if share > 0.0:
+        coat = F_Schlick(COAT_F0, 1.0, LoH)
+        value *= 1.0 - share * coat
+        value += share * coat * GGX(lobe_of(material.coat_roughness**2, 0.0), NoV, NoL, NoH)
+    return value * NoL
+
+
+@njit(cache=True)
+def look_along_lobes(bvh, faces, points, normals, which, eye, strata, hits):
+    """What the vertices ``which`` see along 2 strata^2 rays of reflection, into ``hits``.
+
+    ``eye`` (3,); ``faces``: those from that number on count as backs.
+    """
+    stack = new_stack()
+    for r in range(len(which)):
+        i = which[r]
+        p = row(points, i)
+        v = unit(minus(row_of(eye), p))
+        n = towards_eye(row(normals, i), v)
+        o = along(p, 10 * ABOVE, n)
+        for q in range(hits.shape[1]):
+            d = _lobe(i, q, strata, n, v)
+            hits[r, q] = UNSENT
+            if dot(n, d) > 1e-5:
+                hits[r, q] = face_met(bvh, o, d, faces, stack)
+
+
+@leaf()
+def sent(mesh, look, lights, lit, sky, f, d, density, work):
+    """Luminance that face f, seen from afar, sends against the ray d, into ``work[0]``.
+
+    ``lit`` (k, n): share of each light that reaches a vertex; ``sky`` (n, 3) [cd/m2]: what else
+    does, equal from everywhere. ``density``: rays like this one per solid angle; highlights of a
+    finer detail than they resolve are blurred, or single vertices would glow.
+    """
+    third = 1.0 / 3.0
+    v = (-d[0], -d[1], -d[2])
+    n = towards_eye(unit(blend(mesh.normals, mesh.faces, f, third, third)), v)
+    p = blend(mesh.vertices, mesh.faces, f, third, third)
+    warp, weft = frame(n, row(mesh.warp, mesh.faces[f, 0]))
+    material = look.materials[mesh.panel[f]]
+    colour = row_of(material.albedo)
+    view = view_of(
+        look.tables, material, material.roughness, colour, dot(warp, v), dot(weft, v), dot(n, v)
+    )
+    out, f_out, diffuse = work[0], work[1], work[2]
+    coat = albedo_towards(look.tables, material, view, f_out, diffuse)
+    around = blend(sky, mesh.faces, f, third, third)
+    for c in range(3):
+        out[c] = (f_out[c] + coat + diffuse[c]) * around[c]
+    mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
+    fibres = look.fibres[mesh.panel[f]]
+    for k in range(len(lights.near)):
+        seen = 0.0
+        for corner in range(3):
+            seen += third * lit[k, mesh.faces[f, corner]]
+        if seen <= 0.0:
+            continue
+        l, e = arriving(lights, k, p)
+        angle = angle_of(lights, k, p)
+        NoL = above_horizon(dot(n, l), dot(n, l), angle)
+        if NoL <= 1e-5:
+            continue
+        wider = 0.125 * angle * angle + _BLUR / density
+        x, y = dot(warp, l), dot(weft, l)
+        brdf(look.tables, material, fibres, mean, view, wider, x, y, NoL, f_out)
+        for c in range(3):
+            out[c] += seen * f_out[c] * NoL * e[c]
+
+
+@njit(cache=True)
+def first_bounce(mesh, look, lights, lit, sky, which, strata, hits, out):
+    """Mean luminance (m, 3) that vertices ``which`` get from the faces they met."""
+    work, rays = np.zeros((3, 3)), strata * strata
+    for r in range(len(which)):
+        n = row(mesh.normals, which[r])
+        out[r] = 0.0
+        for q in range(rays):
+            if hits[r, q] >= 0:
+                d = direction(n, which[r], q, strata)
+                density = rays * dot(n, d) / np.pi
+                sent(mesh, look, lights, lit, sky, hits[r, q], d, density, work)
+                for c in range(3):
+                    out[r, c] += work[0, c] / rays
+
+
+@leaf()
+def _covered(hits):
+    """Whether any ray met the cover."""
+    covered = False
+    for hit in hits:
+        covered |= hit >= 0 or hit == DARK
+    return covered
+
+
+@njit(cache=True)
+def reflected(mesh, look, lights, lit, sky, points, which, panels, eye, strata, hits, share, out):
+    """What a reflection sees: ``share`` (m,) of it open, and mean luminance (m, 3) of faces met.
+
+    ``panels`` (n,): panel of every vertex.
+    """
+    work = np.zeros((3, 3))
+    for r in range(len(which)):
+        share[r], out[r] = 1.0, 0.0
+        if not _covered(hits[r]):
+            continue
+        i = which[r]
+        p = row(points, i)
+        v = unit(minus(row_of(eye), p))
+        n = towards_eye(row(mesh.normals, i), v)
+        material = look.materials[panels[i]]
+        total, open_ = 0.0, 0.0
+        for q in range(hits.shape[1]):
+            if hits[r, q] == UNSENT:
+                continue
+            d = _lobe(i, q, strata, n, v)
+            density = _density(dot(n, v), dot(n, unit(along(v, 1.0, d))))
+            weight = _reflectance(material, n, v, d) / density
+            total += weight
+            if hits[r, q] == OPEN:
+                open_ += weight
+            elif hits[r, q] >= 0:
+                density *= hits.shape[1]
+                sent(mesh, look, lights, lit, sky, hits[r, q], d, density, work)
+                for c in range(3):
+                    out[r, c] += weight * work[0, c]
+        if total > 0.0:
+            share[r] = open_ / total
+            for c in range(3):
+                out[r, c] /= total

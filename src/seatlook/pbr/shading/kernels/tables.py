@@ -1,0 +1,161 @@
+"""Directional albedos of the lobes by quadrature, tabulated over roughness and sqrt(mu)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from seatlook.pbr.shading.kernels import leaf
+from seatlook.pbr.shading.kernels.brdf import (
+    D_Charlie,
+    V_Neubelt,
+    V_SmithGGXCorrelated,
+    alphas,
+    layers_at,
+    means_of,
+    rows_of,
+)
+from seatlook.pbr.shading.kernels.lookup import ROUGHNESS_LOW, lookup, lookup_mean
+
+
+@leaf()
+def _ggx_albedo(alpha, mu, n):
+    """Scale and bias at one view, by sampling visible normals (Heitz 2018) on an n x n grid."""
+    sx, cz = np.sqrt(max(0.0, 1.0 - mu * mu)), mu
+    vx, vz = alpha * sx, cz
+    norm = np.sqrt(vx * vx + vz * vz)
+    vx, vz = vx / norm, vz / norm
+    scale, bias = 0.0, 0.0
+    s = 0.5 * (1.0 + vz)
+    for i in range(n):
+        # Finer towards the rim of the disc, where the normals of the lobe's tail lie.
+        q = 1.0 - (i + 0.5) / n
+        r, share = np.sqrt(1.0 - q * q), 2.0 * q
+        for j in range(n):
+            phi = 2.0 * np.pi * (j + 0.5) / n
+            t1, t2 = r * np.cos(phi), r * np.sin(phi)
+            t2 = (1.0 - s) * np.sqrt(max(0.0, 1.0 - t1 * t1)) + s * t2
+            up = np.sqrt(max(0.0, 1.0 - t1 * t1 - t2 * t2))
+            # The frame's second axis is y, its third lies along the view.
+            hx, hy, hz = -t2 * vz + up * vx, t1, t2 * vx + up * vz
+            hx, hy, hz = alpha * hx, alpha * hy, max(1e-9, hz)
+            norm = np.sqrt(hx * hx + hy * hy + hz * hz)
+            hx, hy, hz = hx / norm, hy / norm, hz / norm
+            VoH = sx * hx + cz * hz
+            NoL = 2.0 * VoH * hz - cz
+            if NoL <= 0.0 or VoH <= 0.0:
+                continue
+            lx, ly = 2.0 * VoH * hx - sx, 2.0 * VoH * hy
+            both = V_SmithGGXCorrelated(alpha, alpha, sx, 0.0, cz, lx, ly, NoL)
+            # weight = F G2 / G1, with G2 = 4 NoL NoV V and G1 = 2 NoV / (NoV + Lambda term)
+            one = np.sqrt((alpha * sx) ** 2 + cz * cz)
+            weight = share * both * 4.0 * NoL * 0.5 * (cz + one)
+            m = 1.0 - VoH
+            fresnel = m * m * m * m * m
+            scale += weight * (1.0 - fresnel)
+            bias += weight * fresnel
+    return scale / (n * n), bias / (n * n)
+
+
+@leaf()
+def _sheen_albedo(alpha, mu, n):
+    """Albedo of the nap at one view, on an even grid over sqrt(NoL) and half a turn."""
+    side = np.sqrt(max(0.0, 1.0 - mu * mu))
+    total = 0.0
+    for i in range(n):
+        s = (i + 0.5) / n
+        NoL = s * s
+        low = np.sqrt(1.0 - NoL * NoL)
+        for j in range(n):
+            phi = np.pi * (j + 0.5) / n
+            x, y, z = side + low * np.cos(phi), low * np.sin(phi), mu + NoL
+            NoH = z / np.sqrt(x * x + y * y + z * z)
+            total += D_Charlie(alpha, NoH) * V_Neubelt(mu, NoL) * NoL * 2.0 * s
+    return total / (n * n) * 2.0 * np.pi
+
+
+@leaf()
+def _mean(table, roughness):
+    """Cosine-weighted hemisphere mean of an interpolated table, by the midpoint rule."""
+    n, total = 512, 0.0
+    for i in range(n):
+        s = (i + 0.5) / n
+        total += lookup(table, roughness, s * s) * s * s * 2.0 * s
+    return 2.0 * total / n
+
+
+@njit(cache=True)
+def integrate(rows, columns, grid):
+    """Fields of ``Tables`` on ``rows`` x ``columns`` nodes, each a grid x grid quadrature."""
+    scale, bias = np.empty((rows, columns)), np.empty((rows, columns))
+    sheen = np.empty((rows, columns))
+    scale_mean, bias_mean = np.empty(rows), np.empty(rows)
+    for i in range(rows):
+        roughness = ROUGHNESS_LOW + (1.0 - ROUGHNESS_LOW) * i / (rows - 1)
+        for j in range(columns):
+            mu = max(1e-4, (j / (columns - 1)) ** 2)
+            scale[i, j], bias[i, j] = _ggx_albedo(roughness**2, mu, grid)
+            sheen[i, j] = _sheen_albedo(roughness**2, mu, grid)
+    sheen_norm = np.empty(rows)
+    for i in range(rows):
+        sheen_norm[i] = 1.0 / max(1.0, sheen[i].max())
+        sheen[i] *= sheen_norm[i]
+    for i in range(rows):
+        roughness = ROUGHNESS_LOW + (1.0 - ROUGHNESS_LOW) * i / (rows - 1)
+        scale_mean[i] = _mean(scale, roughness)
+        bias_mean[i] = _mean(bias, roughness)
+    return scale, bias, sheen, scale_mean, bias_mean, sheen_norm
+
+
+@leaf()
+def coupling(tables, materials, out):
+    """Mean of what reaches the diffuse base, per material and roughness, into ``out`` (p, k)."""
+    n = 256
+    for p in range(len(materials)):
+        for i in range(out.shape[1]):
+            roughness = ROUGHNESS_LOW + (1.0 - ROUGHNESS_LOW) * i / (out.shape[1] - 1)
+            means = means_of(tables, materials[p], roughness)
+            rows = rows_of(tables, materials[p], roughness)
+            total = 0.0
+            for j in range(n):
+                s = (j + 0.5) / n
+                base = layers_at(tables, materials[p], rows, means, s * s).base
+                total += base * s * s * 2.0 * s
+            out[p, i] = 2.0 * total / n
+
+
+@leaf()
+def layers(tables, materials, out):
+    """Layers of each material at its own roughness over sqrt(mu), into ``out`` (p, n, 5).
+
+    Columns: what reaches the diffuse base, what gets below coat and nap, the share that the base's
+    lobe reflects more than once, what gets below the coat, and the share lost by the coat's lobe.
+    """
+    n = out.shape[1]
+    for p in range(len(materials)):
+        alpha = alphas(materials[p].roughness, materials[p].anisotropy)
+        roughness = np.sqrt(min(alpha[0], alpha[1]))
+        means = means_of(tables, materials[p], roughness)
+        rows = rows_of(tables, materials[p], roughness)
+        for j in range(n):
+            here = layers_at(tables, materials[p], rows, means, (j / (n - 1)) ** 2)
+            out[p, j, 0], out[p, j, 1] = here.base, here.nap
+            out[p, j, 2] = 1.0 - here.scale - here.bias
+            out[p, j, 3], out[p, j, 4] = here.coat, here.coat_lost
+
+
+@leaf()
+def fibres(tables, materials, out):
+    """Distribution of each material's nap over the sine of the half-vector, into ``out`` (p, n)."""
+    n = out.shape[1]
+    for p in range(len(materials)):
+        roughness = materials[p].sheen_roughness
+        norm = lookup_mean(tables.sheen_norm, roughness)
+        for j in range(n):
+            out[p, j] = norm * D_Charlie(roughness * roughness, np.sqrt(1.0 - (j / (n - 1)) ** 2))
+
+
+@leaf()
+def coupling_at(row, roughness):
+    """Linear value of one material's row."""
+    return lookup_mean(row, roughness)

@@ -1,0 +1,181 @@
+"""Seams on the drawn surface: closed gaps, the allowance turned in, and where the thread runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from seatlook.model import Cover, FloatArray, IntArray, Thread
+from seatlook.pbr.shading.kernels import stitch
+from seatlook.pbr.shading.subdivision import Refined, boundary_edges
+
+# Distance [m] from a seam up to which its thread and groove are drawn.
+_REACH = 0.014
+# Two edges closer than this [m] after sewing are one seam.
+_PARTNER = 0.002
+_ALLOWANCE = 0.003
+
+
+@dataclass(frozen=True, slots=True)
+class SewnEdges:
+    """Boundary edges that are sewn, each (s,) with the panel on its left.
+
+    Parameters
+    ----------
+    start, end : (s,) int64 vertices; panel : (s,) int64; arc : (s,) float64 [m]
+        ``arc`` is the length run along the outline up to ``start``, in the flat panel.
+    """
+
+    start: IntArray
+    end: IntArray
+    panel: IntArray
+    arc: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+
+# Share of white in a thread that has the panel's own colour.
+_LIGHTER = 0.06
+
+
+def pack_thread(thread: Thread) -> stitch.Thread:
+    """Top stitch as the kernels take it."""
+    own = thread.colour is not None
+    red, green, blue = np.ones(3) if thread.colour is None else thread.colour
+    return stitch.Thread(
+        thread.offset,
+        thread.pitch,
+        thread.length,
+        thread.width,
+        (float(red), float(green), float(blue)),
+        1.0 if own else _LIGHTER,
+    )
+
+
+def sewn_edges(cover: Cover, refined: Refined, uv: FloatArray) -> SewnEdges:
+    """Find the refined boundary edges that lie on a stitching of the cover."""
+    n = len(refined.points)
+    key = np.array([n, 1])
+    panel_of = np.zeros(len(cover.rest), dtype=np.int64)
+    panel_of[cover.faces] = cover.panel[:, None]
+    edges = np.zeros((0, 2), dtype=np.int64)
+    if cover.stitchings:
+        edges = boundary_edges(np.array(cover.faces))
+        edges = edges[_is_sewn(cover, edges)]
+    panel = panel_of[edges[:, 0]]
+    first = len(cover.rest)
+    for ends in refined.parents:
+        # The new vertices of a level come in the order of the edges they halve.
+        order = np.argsort(ends @ key)
+        found = np.searchsorted((ends @ key)[order], np.sort(edges, axis=1) @ key)
+        middle = first + order[found]
+        first += len(ends)
+        edges = np.concatenate(
+            [np.column_stack([edges[:, 0], middle]), np.column_stack([middle, edges[:, 1]])]
+        )
+        panel = np.concatenate([panel, panel])
+    length = np.linalg.norm(uv[edges[:, 1]] - uv[edges[:, 0]], axis=1)
+    return SewnEdges(edges[:, 0], edges[:, 1], panel, _arcs(edges, length))
+
+
+def close(x: FloatArray, edges: SewnEdges) -> FloatArray:
+    """Move sewn vertices half-way to the other panel's edge, so no gap is seen."""
+    moved = x.copy()
+    for panel in np.unique(edges.panel):
+        mine, other = edges.panel == panel, edges.panel != panel
+        if not other.any():
+            continue
+        v = np.unique(np.concatenate([edges.start[mine], edges.end[mine]]))
+        a, b = x[edges.start[other]], x[edges.end[other]]
+        near, t, _ = _nearest(x[v], a, b)
+        foot = a[near] + t[:, None] * (b[near] - a[near])
+        close_by = np.linalg.norm(foot - x[v], axis=1) < _PARTNER
+        moved[v[close_by]] = 0.5 * (x[v] + foot)[close_by]
+    return moved
+
+
+def turned_in(
+    x: FloatArray, normals: FloatArray, edges: SewnEdges
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """Strips below the seams: (k, 3) new points, (f, 3) faces into x and them, (k,) their origin.
+
+    They stand for the seam allowance and stop the light and the eye at the seam.
+    """
+    v, place = np.unique(np.concatenate([edges.start, edges.end]), return_inverse=True)
+    # All panels that meet at a seam take part in its inward direction.
+    groups = KDTree(x[v]).query_ball_point(x[v], _PARTNER)
+    inward = np.array([-normals[v[group]].sum(axis=0) for group in groups])
+    length = np.linalg.norm(inward, axis=1, keepdims=True)
+    inward = np.where(length > 1e-9, inward / np.maximum(length, 1e-9), -normals[v])
+    below = len(x) + place
+    s = len(edges)
+    a, b = below[:s], below[s:]
+    faces = np.concatenate(
+        [np.column_stack([edges.end, edges.start, a]), np.column_stack([edges.end, a, b])]
+    )
+    return x[v] + _ALLOWANCE * inward, faces, v
+
+
+def coordinates(uv: FloatArray, panel_of: IntArray, edges: SewnEdges) -> FloatArray:
+    """Distance from the panel's nearest seam and length along it, (n, 2) [m], in the flat panel.
+
+    The distance is infinite beyond 14 mm.
+    """
+    out = np.full((len(uv), 2), np.inf)
+    for panel in np.unique(edges.panel):
+        mine = edges.panel == panel
+        v = np.flatnonzero(panel_of == panel)
+        a, b = uv[edges.start[mine]], uv[edges.end[mine]]
+        near, t, distance = _nearest(uv[v], a, b)
+        length = np.linalg.norm(b - a, axis=1)
+        reached = distance < _REACH
+        arc = edges.arc[mine][near] + t * length[near]
+        out[v[reached]] = np.column_stack([distance, arc])[reached]
+    return out
+
+
+def _is_sewn(cover: Cover, edges: IntArray) -> np.ndarray:
+    """Whether both ends of each boundary edge belong to the same stitching."""
+    sewn = np.zeros(len(edges), dtype=bool)
+    for stitching in cover.stitchings:
+        for side in (stitching.a, stitching.b):
+            held = np.zeros(len(cover.rest), dtype=bool)
+            held[side.vertices[side.weights > 0]] = True
+            sewn |= held[edges].all(axis=1)
+    return sewn
+
+
+def _arcs(edges: IntArray, length: FloatArray) -> FloatArray:
+    """Length run along each chain of edges up to the start of each edge."""
+    starting = {int(a): k for k, a in enumerate(edges[:, 0])}
+    ends = set(edges[:, 1].tolist())
+    arcs = np.full(len(edges), -1.0)
+    heads = [k for a, k in starting.items() if a not in ends]
+    for head in [*heads, *starting.values()]:
+        k: int | None = head
+        run = 0.0
+        while k is not None and arcs[k] < 0:
+            arcs[k] = run
+            run += length[k]
+            k = starting.get(int(edges[k, 1]))
+    return arcs
+
+
+def _nearest(
+    points: FloatArray, a: FloatArray, b: FloatArray
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Nearest of the segments a-b to each point: (index, parameter in [0, 1], distance)."""
+    count = min(4, len(a))
+    _, candidates = KDTree(0.5 * (a + b)).query(points, k=count)
+    candidates = np.asarray(candidates).reshape(len(points), count)
+    along = b[candidates] - a[candidates]
+    to = points[:, None] - a[candidates]
+    size = np.maximum((along**2).sum(axis=-1), 1e-30)
+    t = np.clip((to * along).sum(axis=-1) / size, 0.0, 1.0)
+    distance = np.linalg.norm(to - t[..., None] * along, axis=-1)
+    best = distance.argmin(axis=1)
+    row = np.arange(len(points))
+    return candidates[row, best], t[row, best], distance[row, best]

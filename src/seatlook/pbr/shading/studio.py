@@ -1,0 +1,379 @@
+"""Rendering: what is cached between pictures, and the order in which a picture is made."""
+
+from __future__ import annotations
+
+import functools
+from collections import OrderedDict
+from collections.abc import Hashable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+import numpy.typing as npt
+
+from seatlook.errors import InputError, RenderError, did_you_mean
+from seatlook.model import Appearance, Camera, Light, Rig, Solution, Thread
+from seatlook.pbr.backend import offscreen_backend
+from seatlook.pbr.cache import Kept
+from seatlook.pbr.light.exposure import ev100
+from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_of
+from seatlook.pbr.picture import Image
+from seatlook.pbr.quality import Quality, quality_named, quality_within
+from seatlook.pbr.reflectance.measured import load_maps, map_sets, mean_albedo
+from seatlook.pbr.reflectance.relief import load_textures, texture_index
+from seatlook.pbr.reflectance.tables import load_tables
+from seatlook.pbr.shading.foam import FOAM
+from seatlook.pbr.shading.indirect import Surroundings, camera_key
+from seatlook.pbr.shading.kernels import (
+    bvh,
+    rays,
+    shade,
+    stitch,
+    surface,
+    tables,
+)
+from seatlook.pbr.shading.kernels import (
+    coherent as alike,
+)
+from seatlook.pbr.shading.kernels.brdf import MATERIAL
+from seatlook.pbr.shading.seam import pack_thread
+from seatlook.pbr.shading.surface import Surface, drawn_surface
+
+Looks = Appearance | Mapping[str, Appearance] | None
+
+# A grey card of 18 % fills the background.
+_CARD = 0.18
+# Foam in front of the cover by less than this [m] is a coarse foam face that cuts through it.
+_COMPRESSED = 0.02
+# Nodes at which what a material lets through, and its nap, are tabulated.
+NODES, NAP_NODES = 129, 513
+# How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
+_OCCLUDER = 0.04
+
+
+class Studio:
+    """One solved cover ready to be drawn, with everything that pictures share.
+
+    Faces seen are kept per camera, shadows per camera and light, open sky per mesh: another
+    material costs only its shading, another light only its shadows. With ``shading`` the normals
+    are those of another shape of the same cover; outlines and shadows stay.
+    """
+
+    def __init__(
+        self, solution: Solution, *, shading: Solution | None = None, thread: Thread | None = None
+    ) -> None:
+        offscreen_backend()
+        self.solution = solution
+        self.thread = pack_thread(thread or solution.cover.thread)
+        self.surface: Surface = drawn_surface(solution)
+        if shading is not None:
+            normals = drawn_surface(shading).mesh.normals
+            self.surface = replace(self.surface, mesh=self.surface.mesh._replace(normals=normals))
+        self._kept = Kept()
+
+    # Maps need neither: they are made for the first picture.
+    @functools.cached_property
+    def _bvh(self) -> bvh.Bvh:
+        return bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
+
+    @functools.cached_property
+    def _surroundings(self) -> Surroundings:
+        return Surroundings(self.surface, self._bvh, self._kept)
+
+    def render(
+        self,
+        appearance: Looks = None,
+        *,
+        rig: Rig,
+        camera: Camera,
+        quality: str | Quality = "standard",
+        target_error: float | None = None,
+    ) -> Image:
+        """Draw the cover; see :func:`render`."""
+        level = quality if isinstance(quality, Quality) else quality_named(quality)
+        if target_error is not None:
+            level = quality_within(target_error)
+        look = self._look(appearance)
+        ids = self.faces(camera, level.factor)
+        seen = self._visibility(rig, camera, level, ids)
+        width, height = camera.size
+        ev = ev100(rig)
+        white = white_of(rig)
+        radiance = np.empty((height, width, 3), dtype=np.float32)
+        brightest = shade.shade(
+            self.surface.mesh,
+            eye_of(camera, level.factor),
+            ids,
+            self._alike(rig, camera, level, ids, seen),
+            look,
+            pack_lights(rig, level.factor),
+            self._surroundings.light(rig, look, level, camera, ids),
+            seen,
+            level.factor,
+            level.facets,
+            _CARD * 2.5 * 2.0**ev / np.pi * white,
+            radiance,
+        )
+        _check(brightest, ids, seen, camera)
+        return Image(
+            radiance=radiance,
+            ev100=ev,
+            lux=MappingProxyType(lux_at_seat(rig)),
+            white=white,
+            camera=camera,
+            cover=self._cover(camera, level.factor),
+        )
+
+    def _cover(self, camera: Camera, factor: int) -> npt.NDArray[np.float32]:
+        """Share of each pixel that shows the cover, (h, w)."""
+
+        def make() -> npt.NDArray[np.float32]:
+            share = np.empty(camera.size[::-1], dtype=np.float32)
+            surface.covered(self.faces(camera, factor), self.surface.opaque, factor, share)
+            share.flags.writeable = False
+            return share
+
+        return np.asarray(self._kept(("cover", camera_key(camera), factor), make))
+
+    def faces(self, camera: Camera, factor: int = 1) -> npt.NDArray[np.int32]:
+        """Face of the drawn mesh seen by each sample, (h factor, w factor), -1 for none.
+
+        Raises
+        ------
+        RenderError
+            Nothing is in the picture.
+        """
+        key = ("faces", camera_key(camera), factor)
+        return np.asarray(self._kept(key, lambda: self._draw(camera, factor)))
+
+    def facing(self, camera: Camera, factor: int = 1) -> npt.NDArray[np.float32]:
+        """Cosine of the normal to the view at each sample of :meth:`faces`; 1 where is none."""
+        key = ("facing", camera_key(camera), factor)
+        return np.asarray(self._kept(key, lambda: self._facing(camera, factor)))
+
+    def _facing(self, camera: Camera, factor: int) -> npt.NDArray[np.float32]:
+        ids = self.faces(camera, factor)
+        cosine = np.ones(ids.shape, dtype=np.float32)
+        surface.facing(self.surface.mesh, eye_of(camera, factor), ids, cosine)
+        return cosine
+
+    def _draw(self, camera: Camera, factor: int) -> npt.NDArray[np.int32]:
+        from seatlook.pbr._vtk import face_window
+
+        mesh, m = self.surface.mesh, self.surface.opaque
+        size = (camera.size[0] * factor, camera.size[1] * factor)
+        window, eye = face_window(), eye_of(camera, factor)
+        ids = window.faces(mesh.vertices, mesh.faces[:m], camera, size)
+        if len(mesh.faces) > m:
+            foam = window.faces(mesh.vertices, mesh.faces[m:], camera, size)
+            foam = np.where(foam >= 0, foam + np.int32(m), foam)
+            cover_far, foam_far = np.empty(ids.shape), np.empty(ids.shape)
+            front = surface.distances(mesh, eye, ids, cover_far)
+            surface.distances(mesh, eye, foam, foam_far)
+            pressed = np.where(front, _COMPRESSED, 0.0)
+            ids = np.where(foam_far < cover_far - pressed, foam, ids)
+        if not (ids >= 0).any():
+            raise RenderError(f"camera {camera.name}: nothing is in the picture")
+        return ids
+
+    def _visibility(
+        self, rig: Rig, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
+    ) -> npt.NDArray[np.uint8]:
+        """Share of each light [1/255] seen by each sample, (lights, h, w)."""
+        stack = np.empty((len(rig.lights), *ids.shape), dtype=np.uint8)
+        for k, one in enumerate(rig.lights):
+            key = ("shadow", camera_key(camera), level.factor, level.rays, _light_key(one))
+            make = functools.partial(self._shadow, rig, k, camera, level, ids)
+            stack[k] = self._kept(key, make)
+        return stack
+
+    def _alike(
+        self,
+        rig: Rig,
+        camera: Camera,
+        level: Quality,
+        ids: npt.NDArray[np.int32],
+        seen: npt.NDArray[np.uint8],
+    ) -> npt.NDArray[np.bool_]:
+        """Pixels whose 2 x 2 samples are as good as one, (h, w)."""
+
+        def make() -> npt.NDArray[np.bool_]:
+            same = np.zeros(camera.size[::-1], dtype=np.bool_)
+            if level.factor == 2:
+                eye, far = eye_of(camera, 2), stitch.reach(self.thread)
+                alike.alike(self.surface.mesh, eye, ids, seen, far, same)
+            return same
+
+        lights = tuple(_light_key(one) for one in rig.lights)
+        key = ("alike", camera_key(camera), level.factor, level.rays, lights)
+        return np.asarray(self._kept(key, make))
+
+    def _shadow(
+        self, rig: Rig, k: int, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
+    ) -> npt.NDArray[np.uint8]:
+        share = np.full(ids.shape, 255, dtype=np.uint8)
+        if level.rays == 0:
+            return share
+        rays.shadows(
+            self._bvh,
+            self.surface.mesh,
+            eye_of(camera, level.factor),
+            ids,
+            pack_lights(rig),
+            k,
+            level.factor,
+            level.rays,
+            _edge_width(rig.lights[k], camera),
+            share,
+        )
+        return share
+
+    def _look(self, appearance: Looks) -> shade.Look:
+        cover = self.solution.cover
+        own = {n: m.appearance for n, m in zip(cover.panel_names, cover.materials, strict=True)}
+        if isinstance(appearance, Appearance):
+            own = dict.fromkeys(own, appearance)
+        elif appearance is not None:
+            unknown = sorted(set(appearance) - set(own))
+            if unknown:
+                raise InputError.single(
+                    "appearance",
+                    got=f"panel {unknown[0]!r}",
+                    expected=f"one of {', '.join(own)}",
+                    hint=did_you_mean(unknown[0], own),
+                )
+            own |= appearance
+        looks = [*own.values(), FOAM]
+        materials = pack_materials(looks)
+        couplings = np.empty((len(materials), len(load_tables().scale_mean)))
+        tables.coupling(load_tables(), materials, couplings)
+        layers, fibres = np.empty((len(materials), NODES, 5)), np.empty((len(materials), NAP_NODES))
+        tables.layers(load_tables(), materials, layers)
+        tables.fibres(load_tables(), materials, fibres)
+        used = {int(k) for k in materials["texture"] if k >= 0}
+        return shade.Look(
+            materials,
+            couplings,
+            layers,
+            fibres,
+            load_tables(),
+            load_textures(*used),
+            load_maps(map_sets(looks)),
+            np.zeros(1, dtype=MATERIAL),
+            self.thread,
+        )
+
+
+def render(
+    solution: Solution,
+    appearance: Looks = None,
+    *,
+    rig: Rig,
+    camera: Camera,
+    quality: str | Quality = "standard",
+    target_error: float | None = None,
+) -> Image:
+    """Draw a solved cover under a rig.
+
+    Parameters
+    ----------
+    appearance : None for the panels' own materials, one Appearance for all panels, or a mapping
+        from panel name to Appearance; panels not named keep their own
+    quality : ``draft`` (hard shadows, no smoothing), ``standard`` (2 x 2 samples, soft shadows,
+        covered sky, one bounce) or ``high`` (4 x 4, three bounces); also ``T0`` to ``T4``, of
+        which these are T1, T3 and T4, or a :class:`~seatlook.pbr.quality.Quality`
+    target_error : instead of ``quality``: the cheapest tier whose charted FLIP against path
+        tracing is at most this
+
+    Returns
+    -------
+    Image
+        Radiance [cd/m2] and the rig's exposure, which does not depend on anything drawn.
+
+    Raises
+    ------
+    NoOffscreenContext, RenderError, InputError
+
+    Notes
+    -----
+    A studio is kept for the two solutions drawn last; make your own :class:`Studio` to decide.
+    """
+    return studio(solution).render(
+        appearance, rig=rig, camera=camera, quality=quality, target_error=target_error
+    )
+
+
+_studios: OrderedDict[int, Studio] = OrderedDict()
+
+
+def studio(solution: Solution) -> Studio:
+    """Return the studio of a solution, making it where it is not among the last two."""
+    key = id(solution)
+    if key not in _studios:
+        _studios[key] = Studio(solution)
+        if len(_studios) > 2:
+            _studios.popitem(last=False)
+    _studios.move_to_end(key)
+    return _studios[key]
+
+
+def pack_materials(appearances: list[Appearance]) -> np.ndarray:
+    """Records (p,) of the kernels' material type; the albedo is the mean of what is seen."""
+    out = np.zeros(len(appearances), dtype=MATERIAL)
+    sets = map_sets(appearances)
+    for record, a in zip(out, appearances, strict=True):
+        for name in MATERIAL.names or ():
+            if name not in ("texture", "maps"):
+                record[name] = getattr(a, name)
+        record["texture"] = texture_index(a)
+        record["maps"] = -1
+        if a.maps is not None:
+            record["maps"] = sets.index(a.maps)
+            record["albedo"] *= mean_albedo(a.maps)
+    return out
+
+
+def eye_of(camera: Camera, factor: int) -> surface.Eye:
+    """Rays through the centres of ``factor`` x ``factor`` samples per pixel.
+
+    Raises
+    ------
+    InputError
+        The camera sits on its target or looks along its up vector.
+    """
+    forward = camera.target - camera.position
+    right = np.cross(forward, camera.up)
+    if np.linalg.norm(right) <= 1e-9 * np.linalg.norm(camera.up) * np.linalg.norm(forward):
+        raise InputError.single(
+            f"camera {camera.name}",
+            got=f"position {camera.position.tolist()}, up {camera.up.tolist()}",
+            expected="a target away from the position and an up vector across the view",
+        )
+    forward = forward / np.linalg.norm(forward)
+    right = right / np.linalg.norm(right)
+    down = -np.cross(right, forward)
+    width, height = camera.size[0] * factor, camera.size[1] * factor
+    step = 2 * np.tan(np.radians(camera.vertical_fov_deg) / 2) / height
+    first = forward - 0.5 * (width - 1) * step * right - 0.5 * (height - 1) * step * down
+    return surface.Eye(np.array(camera.position), first, step * right, step * down)
+
+
+def _check(brightest: float, ids: np.ndarray, seen: np.ndarray, camera: Camera) -> None:
+    if not np.isfinite(brightest):
+        raise RenderError(f"camera {camera.name}: the picture holds values that are not finite")
+    if brightest <= 0 and (seen[:, ids >= 0] > 0).any():
+        raise RenderError(f"camera {camera.name}: the picture is black though a light reaches it")
+
+
+def _edge_width(light: Light, camera: Camera) -> int:
+    """Pixels over which the edge of a light's shadow may spread."""
+    distance = float(np.linalg.norm(camera.target - camera.position))
+    pixel = distance * 2 * np.tan(np.radians(camera.vertical_fov_deg) / 2) / camera.size[1]
+    half = light.size / 2
+    if light.near:
+        half = light.size / max(float(np.linalg.norm(light.vector - camera.target)), 1e-6)
+    return int(np.clip(np.ceil(np.tan(min(half, 1.0)) * _OCCLUDER / pixel), 1, 64))
+
+
+def _light_key(light: Light) -> Hashable:
+    return (light.near, light.vector.tobytes(), light.size)

@@ -1,0 +1,150 @@
+"""The surface that is drawn: the solved panels refined and smooth, and the foam below them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from seatlook.errors import RenderError
+from seatlook.model import FloatArray, IntArray, Solution
+from seatlook.pbr.shading import seam
+from seatlook.pbr.shading.foam import with_foam
+from seatlook.pbr.shading.kernels.surface import Mesh
+from seatlook.pbr.shading.subdivision import Refined, sharp_corners, subdivide
+
+# Refinement stops below this edge length [m], about a pixel of the named views, or at this size.
+_FINE = 0.0012
+_MOST_FACES = 500_000
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """What is drawn.
+
+    Parameters
+    ----------
+    mesh : Mesh           cover first, then foam; the foam's ``panel`` is one past the last panel
+    refined : Refined     how the cover's vertices come from the solved ones
+    vertices, faces : int how many of the mesh's are the refined panels
+    opaque : int          how many faces belong to the cover with its allowance turned in
+    coarse_faces : (m, 3) the solver's faces
+    """
+
+    mesh: Mesh
+    refined: Refined
+    vertices: int
+    faces: int
+    opaque: int
+    coarse_faces: IntArray
+
+    @property
+    def solved(self) -> int:
+        """How many of the vertices are the solver's; they come first."""
+        return len(self.refined.points) - sum(map(len, self.refined.parents))
+
+    @property
+    def cover_mesh(self) -> Mesh:
+        """Only the cover; foam that it compresses is not in the way of light."""
+        m = self.mesh
+        return m._replace(faces=m.faces[: self.opaque], panel=m.panel[: self.opaque])
+
+
+def drawn_surface(solution: Solution) -> Surface:
+    """Refine the solved cover until its elements do not show, and add the foam.
+
+    Raises
+    ------
+    RenderError
+        The cover has no faces, or a face without area.
+    """
+    cover = solution.cover
+    if len(cover.faces) == 0:
+        raise RenderError("the cover has no faces to draw")
+    levels = _levels(cover.element_size, len(cover.faces))
+    refined = subdivide(
+        np.hstack([solution.positions, cover.rest]),
+        cover.faces,
+        levels=levels,
+        corners=sharp_corners(cover.rest, cover.faces) if levels else np.zeros(0, dtype=np.int64),
+    )
+    uv = np.ascontiguousarray(refined.points[:, 3:])
+    edges = seam.sewn_edges(cover, refined, uv)
+    x = seam.close(refined.points[:, :3], edges)
+    panel = np.repeat(cover.panel, 4**levels)
+    mesh = Mesh(
+        x,
+        vertex_normals(x, refined.faces),
+        _warp(x, uv, refined.faces),
+        uv,
+        refined.faces,
+        panel,
+        seam.coordinates(uv, _panel_of_vertices(refined.faces, panel, len(x)), edges),
+    )
+    n, m = len(x), len(refined.faces)
+    if len(edges):
+        mesh = _with_allowance(mesh, edges)
+    k = len(mesh.faces)
+    if cover.foam is not None:
+        mesh = with_foam(mesh, cover.foam, len(cover.panel_names), cover=n)
+    return Surface(mesh, refined, n, m, k, np.array(cover.faces))
+
+
+def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
+    """Area-weighted unit normals (n, 3); vertices without a face get z.
+
+    Panels share no vertices, so their seams stay creases.
+    """
+    a, b, c = (x.take(corner, axis=0) for corner in faces.T)
+    n = _sum_to_vertices(np.cross(b - a, c - a), faces, len(x))
+    length = np.linalg.norm(n, axis=1, keepdims=True)
+    lost = length[:, 0] == 0
+    n[lost] = (0.0, 0.0, 1.0)
+    length[lost] = 1.0
+    return np.ascontiguousarray(n / length)
+
+
+def _levels(element_size: float, faces: int) -> int:
+    levels = 0
+    while element_size / 2**levels > _FINE and faces * 4 ** (levels + 1) <= _MOST_FACES:
+        levels += 1
+    return levels
+
+
+def _warp(x: FloatArray, uv: FloatArray, faces: np.ndarray) -> FloatArray:
+    """Unit direction (n, 3) of the first pattern coordinate at the vertices."""
+    a, b, c = (x.take(corner, axis=0) for corner in faces.T)
+    p, q, r = (uv.take(corner, axis=0) for corner in faces.T)
+    # det times dx/du: as a sum over faces this weights each with its area.
+    along = (b - a) * (r - p)[:, 1:] - (c - a) * (q - p)[:, 1:]
+    warp = _sum_to_vertices(along, faces, len(x))
+    length = np.linalg.norm(warp, axis=1, keepdims=True)
+    return np.ascontiguousarray(warp / np.where(length > 0, length, 1.0))
+
+
+def _sum_to_vertices(values: FloatArray, faces: np.ndarray, n: int) -> FloatArray:
+    """Sum (n, d) at each vertex of the values (m, d) of its faces."""
+    m = len(faces)
+    corners = (np.ones(3 * m), faces.ravel(), np.arange(0, 3 * m + 1, 3))
+    return np.asarray(sparse.csc_array(corners, shape=(n, m)) @ values)
+
+
+def _with_allowance(mesh: Mesh, edges: seam.SewnEdges) -> Mesh:
+    points, faces, origin = seam.turned_in(mesh.vertices, mesh.normals, edges)
+    owner = np.concatenate([edges.panel, edges.panel])
+    return Mesh(
+        np.vstack([mesh.vertices, points]),
+        np.vstack([mesh.normals, mesh.normals[origin]]),
+        np.vstack([mesh.warp, mesh.warp[origin]]),
+        np.vstack([mesh.uv, mesh.uv[origin]]),
+        np.vstack([mesh.faces, faces]),
+        np.concatenate([mesh.panel, owner]),
+        np.vstack([mesh.seam, np.column_stack([np.zeros(len(points)), mesh.seam[origin, 1]])]),
+    )
+
+
+def _panel_of_vertices(faces: IntArray, panel: IntArray, n: int) -> IntArray:
+    out = np.zeros(n, dtype=np.int64)
+    out[faces] = panel[:, None]
+    return out

@@ -1,0 +1,1 @@
+"""The frame of the gallery page: its data, its charts, its files."""

@@ -1,0 +1,1 @@
+"""The parts of the gallery page, each from the readings it shows."""

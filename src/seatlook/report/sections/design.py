@@ -1,0 +1,74 @@
+"""The finished shape against its design on the page: by zone, and where the seams lie."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from seatlook.chain.evaluation import Evaluation
+from seatlook.model.table import Table
+from seatlook.results.deviation import seam_lines
+from seatlook.results.gap import ZoneStandoff, zone_standoff
+
+DISTANCE_HEADS = (
+    "zone",
+    "mean [mm]",
+    "rms [mm]",
+    "95 % within [mm]",
+    "lowest [mm]",
+    "highest [mm]",
+    "measured [%]",
+)
+FILES = ("shape.csv", "seam-lines.csv")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DesignSection:
+    """One row per zone, and one per seam; ``visible`` if the design is the visible side."""
+
+    zones: Table
+    seams: Table
+    visible: bool
+
+
+def design_section(evaluation: Evaluation) -> DesignSection | None:
+    """Gather the section; None where the scene names no design surface."""
+    design = evaluation.scene.design
+    if design is None or evaluation.deviation is None:
+        return None
+    seams = seam_lines(evaluation.solution, design)
+    return DesignSection(
+        zones=distance_table(zone_standoff(evaluation.solution, evaluation.deviation)),
+        seams=Table(
+            heads=("seam", "length [mm]", "mean [mm]", "largest [mm]"),
+            rows=tuple(
+                (
+                    row.seam,
+                    1e3 * row.length,
+                    None if row.mean is None else 1e3 * row.mean,
+                    None if row.largest is None else 1e3 * row.largest,
+                )
+                for row in sorted(seams, key=lambda row: -(row.largest or 0.0))
+            ),
+        ),
+        visible=design.visible,
+    )
+
+
+def distance_table(rows: tuple[ZoneStandoff, ...]) -> Table:
+    """Zones, the one farthest off first, without the free edges."""
+    return Table(
+        heads=DISTANCE_HEADS,
+        rows=tuple(
+            (
+                row.zone,
+                1e3 * row.mean,
+                1e3 * row.rms,
+                1e3 * row.p95,
+                1e3 * row.lowest,
+                1e3 * row.highest,
+                100 * row.measured,
+            )
+            for row in sorted(rows, key=lambda row: -row.rms)
+            if row.zone != "free edge"
+        ),
+    )

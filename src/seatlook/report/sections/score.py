@@ -1,0 +1,285 @@
+"""The score of a result as tables, sentences, maps and plain values: for page and command line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from seatlook.chain.evaluation import Evaluation
+from seatlook.errors import InputError
+from seatlook.model import Limit
+from seatlook.model.progress import Progress
+from seatlook.model.scene import SCORE_MEASURES
+from seatlook.model.table import Table, number
+from seatlook.pbr.maps.pixel_map import render_pixel_map
+from seatlook.report.page.data import Check, MapView, ScoreSection
+from seatlook.visibility.light_search import WorstLight
+from seatlook.visibility.observer import OBSERVER
+from seatlook.visibility.scoring import SceneScore, score_scene
+from seatlook.visibility.view import NULL_LIMIT
+
+_LEAST_TOP = 3.0  # of a map's range: the first value of D that counts as visible
+
+
+def visibility(evaluation: Evaluation, progress: Progress | None = None) -> ScoreSection:
+    """Score an evaluation for its page; what stands against a score is said instead of one.
+
+    Limits of [accept] on a score that cannot be given are missed.
+    """
+    scene = evaluation.scene
+    try:
+        found = score_scene(
+            scene,
+            evaluation.solution,
+            evaluation.indices,
+            camera=evaluation.camera,
+            progress=progress,
+        )
+    except InputError as error:
+        limits = [limit for limit in scene.limits if limit.measure in SCORE_MEASURES]
+        return ScoreSection(
+            refused=str(error), checks=tuple(_check(limit, "no score", False) for limit in limits)
+        )
+    return score_section(found, evaluation.folder)
+
+
+def score_section(score: SceneScore, folder: Path) -> ScoreSection:
+    """Gather the page's section; draws the map of every texture under its worst rig."""
+    cells = [(texture, score.grid.worst_rig(texture)) for texture in score.grid.textures]
+    return ScoreSection(
+        grid=grid_table(score),
+        causes=cause_table(score),
+        zones=zone_table(score),
+        sentences=tuple(sentences(score)),
+        maps=draw_maps(score, cells, folder),
+        checks=score_checks(score),
+        cells=MappingProxyType({cell: s.score.vwi for cell, s in score.grid.sights.items()}),
+    )
+
+
+def height_text(height: float, top: float) -> str:
+    """Equivalent height [mm] for a reader, or what it is above.
+
+    Examples
+    --------
+    >>> height_text(0.00021, 0.001), height_text(math.inf, 0.001)
+    ('0.210 mm', '> 1 mm')
+    """
+    return f"> {number(1e3 * top)} mm" if math.isinf(height) else f"{number(1e3 * height)} mm"
+
+
+def grid_table(score: SceneScore) -> Table:
+    """Textures by rigs with row and column summaries."""
+    grid, vwi = score.grid, score.grid.vwi
+    rows: list[tuple[str | float, ...]] = [
+        (
+            texture,
+            *(_cell(score, texture, rig) for rig in grid.rigs),
+            float(vwi[k].mean()),
+            grid.worst_rig(texture),
+        )
+        for k, texture in enumerate(grid.textures)
+    ]
+    rows.append(("mean", *map(float, vwi.mean(axis=0)), float(vwi.mean()), "–"))
+    worst = [grid.worst_texture(rig) for rig in grid.rigs]
+    rows.append(("worst texture", *worst, "–", "–"))
+    return Table(heads=("VWI, height", *grid.rigs, "mean", "worst rig"), rows=tuple(rows))
+
+
+def cause_table(score: SceneScore) -> Table:
+    """One row per cell: the score by cause beside its cross-checks."""
+    low, high = OBSERVER.visible
+    return Table(
+        heads=(
+            "texture",
+            "rig",
+            "VWI",
+            "VWI where W_stretch",
+            "VWI where W_compression",
+            f"D above {number(low)} [cm2]",
+            f"D above {number(high)} [cm2]",
+            "rms log ratio",
+            "1 - SSIM",
+        ),
+        rows=tuple(
+            (
+                texture,
+                rig,
+                sight.score.vwi,
+                sight.stretch,
+                sight.compression,
+                *(1e4 * area for area in sight.score.visible_area or (math.nan, math.nan)),
+                sight.measures.log_ratio,
+                sight.measures.dissimilarity,
+            )
+            for (texture, rig), sight in score.grid.sights.items()
+        ),
+    )
+
+
+def zone_table(score: SceneScore) -> Table:
+    """One row per zone in view, the most visible first: each texture under its worst rig."""
+    grid = score.grid
+
+    def worst(zone: str, texture: str) -> tuple[float, str]:
+        vwi, rig = max((grid.sights[texture, r].zones[zone], r) for r in grid.rigs)
+        ladder = score.ladder.zones[zone]
+        return vwi, f"{number(vwi)}, {height_text(ladder.equivalent(vwi), ladder.top)} ({rig})"
+
+    found = [
+        (zone, {texture: worst(zone, texture) for texture in grid.textures})
+        for zone in score.ladder.zones
+    ]
+    found.sort(key=lambda row: -max(vwi for vwi, _ in row[1].values()))
+    return Table(
+        heads=("zone", "peak to valley [mm]", *grid.textures),
+        rows=tuple(
+            (zone, 1e3 * score.ladder.zones[zone].height, *(text for _, text in cells.values()))
+            for zone, cells in found
+        ),
+    )
+
+
+def sentences(score: SceneScore) -> Iterator[str]:
+    """Say what follows from the tables."""
+    grid, view = score.grid, score.view
+    yield f"Least visible texture under these lights: {grid.least_visible}."
+    for first, second, rig in grid.not_separable():
+        yield f"Not separable under {rig}: {first} and {second}; the measures disagree."
+    yield (
+        f"The wrinkles in view are {number(1e3 * score.ladder.height)} mm from peak to valley "
+        f"(95 % of their area). Reference: {view.mode}"
+        + (f", cut-off {number(1e3 * view.cutoff)} mm." if view.mode != "design" else ".")
+    )
+    yield (
+        f"Null gate: a cover without wrinkles scores {number(score.null)} at most, below "
+        f"{number(NULL_LIMIT)}."
+    )
+    yield "The constants of the score are not calibrated on people."
+
+
+def draw_maps(
+    score: SceneScore, cells: Iterable[tuple[str, str]], folder: Path
+) -> tuple[MapView, ...]:
+    """Draw D of cells (texture, rig) below ``folder``, all with one range."""
+    top = max(_LEAST_TOP, *(sight.score.p995 for sight in score.grid.sights.values()))
+    view, maps = score.view, []
+    for texture, rig in cells:
+        found = score.grid.sights[texture, rig].score
+        picture = render_pixel_map(
+            view.solution,
+            np.where(view.region.mask, found.map, np.nan),
+            camera=view.camera,
+            title=f"Visibility D of wrinkles: {texture}, {rig}",
+            value_range=(0.0, top),
+            unit="1",
+        )
+        path = f"maps/visibility-{_slug(texture)}-{_slug(rig)}.png"
+        picture.save(folder / path)
+        maps.append(
+            MapView(
+                name=f"D of {texture}, {rig}",
+                image=path,
+                low=0.0,
+                high=top,
+                meaning="visibility of wrinkles in thresholds of the model observer; seams and "
+                "silhouettes are left out",
+            )
+        )
+    return tuple(maps)
+
+
+def score_values(
+    score: SceneScore, searches: dict[str, dict[str, WorstLight]] | None = None
+) -> dict[str, Any]:
+    """Everything as plain values; an equivalent height above the ladder is null."""
+    grid, view = score.grid, score.view
+    return {
+        "camera": view.camera.name,
+        "reference": view.mode,
+        "cutoff_mm": 1e3 * view.cutoff if view.mode != "design" else None,
+        "calibrated": OBSERVER.calibrated,
+        "null_vwi": score.null,
+        "height_mm": 1e3 * score.ladder.height,
+        "ladder_mm": (1e3 * score.ladder.heights).tolist(),
+        "ladder_vwi": score.ladder.vwi.tolist(),
+        "least_visible": grid.least_visible,
+        "worst_rig": {texture: grid.worst_rig(texture) for texture in grid.textures},
+        "worst_texture": {rig: grid.worst_texture(rig) for rig in grid.rigs},
+        "not_separable": [list(entry) for entry in grid.not_separable()],
+        "cells": [_cell_values(score, *cell) for cell in grid.sights],
+        "limits": [
+            {
+                "zone": v.limit.zone,
+                "measure": v.limit.measure,
+                "value": v.value if math.isfinite(v.value) else None,
+                "maximum": v.limit.maximum,
+                "kept": v.kept,
+            }
+            for v in score.verdicts
+        ],
+        "worst_light": {
+            texture: {kind: _light_values(found) for kind, found in kinds.items()}
+            for texture, kinds in (searches or {}).items()
+        },
+    }
+
+
+def _cell_values(score: SceneScore, texture: str, rig: str) -> dict[str, Any]:
+    sight = score.grid.sights[texture, rig]
+    return {
+        "texture": texture,
+        "rig": rig,
+        "vwi": sight.score.vwi,
+        "equivalent_height_mm": _millimetres(score.grid.height[texture, rig]),
+        "vwi_stretch": sight.stretch,
+        "vwi_compression": sight.compression,
+        "log_ratio": sight.measures.log_ratio,
+        "dissimilarity": sight.measures.dissimilarity,
+        "zones": {
+            zone: {
+                "vwi": vwi,
+                "equivalent_height_mm": _millimetres(score.zone_height(zone, texture, rig)),
+            }
+            for zone, vwi in sight.zones.items()
+        },
+    }
+
+
+def _light_values(found: WorstLight) -> dict[str, float]:
+    return {
+        "azimuth_deg": found.azimuth_deg,
+        "elevation_deg": found.elevation_deg,
+        "vwi": found.vwi,
+        "lights_tried": len(found.tried),
+    }
+
+
+def _millimetres(height: float) -> float | None:
+    return 1e3 * height if math.isfinite(height) else None
+
+
+def _cell(score: SceneScore, texture: str, rig: str) -> str:
+    height = height_text(score.grid.height[texture, rig], score.ladder.top)
+    return f"{number(score.grid.sights[texture, rig].score.vwi)}, {height}"
+
+
+def score_checks(score: SceneScore) -> tuple[Check, ...]:
+    """Limits of [accept] on the score, and what was found."""
+    return tuple(_check(v.limit, number(v.value), v.kept) for v in score.verdicts)
+
+
+def _check(limit: Limit, value: str, kept: bool) -> Check:
+    return Check(
+        name=f"{limit.zone}: {limit.measure}", value=value, limit=number(limit.maximum), kept=kept
+    )
+
+
+def _slug(name: str) -> str:
+    """Make a file name of a name."""
+    return "".join(c if c.isalnum() else "-" for c in name.lower()).strip("-")

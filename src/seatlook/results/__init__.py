@@ -1,0 +1,1 @@
+"""Readings of a solution: gap, deviation, ring pulls, energy balance."""

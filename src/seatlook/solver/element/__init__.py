@@ -1,0 +1,1 @@
+"""The sheet: membrane, bending, folds across seams, mass and loads."""

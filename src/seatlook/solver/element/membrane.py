@@ -1,0 +1,253 @@
+"""Membrane of a flat sheet: strain from the arcs of its edges, one law for each triangle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array, eye_array, kron
+
+from seatlook.model import Fabric, FloatArray, IntArray
+from seatlook.solver.element.constitutive import law_tables, typical_stiffness
+from seatlook.solver.element.curvature import Curvature
+from seatlook.solver.element.edgeslope import Edges, tangent_matrix
+from seatlook.solver.element.unloading import Unloading
+from seatlook.solver.kernels import membrane as kernels
+from seatlook.solver.kernels.curvature import along_edges
+
+
+class Membrane:
+    """Membrane energy ``sum A psi(E)`` [J] over all panels.
+
+    The strain of a triangle is that of its three edges, each as long as the arc that the bending
+    element's curvature makes of its chord. In the plane this is the constant-strain triangle, so
+    the patch test holds on every mesh; bent, a quadratic surface has the strain it should have,
+    which spares the false bending stiffness and most of the locking of chords.
+
+    psi = warp curve (E11) + weft curve (E22) + shear curve (2 E12) + coupling. Stiffness is
+    piecewise linear in Green strain, so stress is smooth and energy a cubic. In compression it
+    falls to ``compression_ratio`` times its first value over 2e-3 of strain; the coupling
+    ``C12 ((1 - c) p(E11) p(E22) + c E11 E22)``, p = e^2 / (e + 2e-3) in tension and 0 else, keeps
+    the same share c, so that psi stays convex and c = 1 is the linear orthotropic law. Fabrics with
+    unloading curves have a history, see ``Unloading``; ``wear`` adds to it between steps.
+
+    Parameters
+    ----------
+    edges : of the flat mesh
+    curvature : from ``recover_curvature``
+    area : (m,) float64 [m2]
+    fabric : (m,) int64                   index into ``fabrics``
+    """
+
+    def __init__(
+        self,
+        edges: Edges,
+        curvature: Curvature,
+        area: FloatArray,
+        fabric: IntArray,
+        fabrics: Sequence[Fabric],
+    ) -> None:
+        self._edges, self._area, self._fabric = edges, area, fabric
+        self._natural = natural_strains(edges)
+        self._count = count = len(curvature.reference)
+        self._rows: tuple[IntArray, IntArray, FloatArray] = along_edges(
+            count, edges.faces, edges.normal, *curvature.rows
+        )
+        self._bow_offset = _bow_offset(edges, curvature.offset)
+        self._law = law_tables(fabrics)
+        self._constants = np.array(
+            [[f.poisson * f.weft.stiffness[0], f.compression_ratio] for f in fabrics]
+        )
+        # None costs nothing: most fabrics go back the way they came.
+        self._unloading = None
+        if any(f.warp_unloading or f.weft_unloading for f in fabrics):
+            self._unloading = Unloading(fabric, fabrics, self._law)
+        self._laplacian = self._plane_laplacian(count, fabrics)
+        self._bow = np.empty((len(edges.ends), 3))
+        self._edge_strain = np.empty(len(edges.ends))
+        self._pull = np.empty(len(edges.ends))
+        self._E = np.empty((len(area), 3))
+
+    @property
+    def peaks(self) -> FloatArray | None:
+        """Largest warp and weft strains so far, (m, 2), -inf if never stretched; None if unkept."""
+        return None if self._unloading is None else self._unloading.peaks
+
+    def wear(self, x: FloatArray) -> None:
+        """Take the strains at ``x`` into the history; energy and forces there do not change."""
+        if self._unloading is not None:
+            self._deform(x)
+            self._unloading.wear(self._E)
+
+    def remember(self, peaks: FloatArray) -> None:
+        """Take over the ``peaks`` of an earlier state of the same mesh."""
+        if self._unloading is not None:
+            self._unloading.wear(peaks)
+
+    def strain(self, x: FloatArray) -> FloatArray:
+        """Return the Green strain (E11, E22, 2 E12) of every triangle, (m, 3) [1]."""
+        self._deform(x)
+        return self._E.copy()
+
+    def stress(self, x: FloatArray) -> FloatArray:
+        """Return the second Piola-Kirchhoff stress (S11, S22, S12), (m, 3) [N/m]."""
+        self._deform(x)
+        return self._stress()
+
+    def value(self, x: FloatArray, gradient: FloatArray) -> float:
+        """Return the energy [J] and add its gradient [N] to ``gradient``."""
+        self._deform(x)
+        energy = kernels.tensions(
+            self._E,
+            self._edges.of_face,
+            self._natural,
+            self._area,
+            self._fabric,
+            *self._law,
+            self._constants,
+            self._pull,
+        )
+        if self._unloading is not None:
+            energy += self._unloading.tensions(
+                self._E, self._edges.of_face, self._natural, self._area, self._pull
+            )
+        kernels.forces(
+            x, self._pull, self._edges.ends, self._edges.length, *self._rows, self._bow, gradient
+        )
+        return float(energy)
+
+    def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
+        """Second derivative (3n, 3n) [N/m]; ``definite`` keeps the tensile part of the stress."""
+        material, pull = self.tangent(x, definite=definite)
+        of_face = self._edges.of_face
+        pairs = (np.repeat(of_face, 3, axis=1).ravel(), np.tile(of_face, (1, 3)).ravel())
+        count = len(self._edges.ends)
+        coupled = csr_array((material.ravel(), pairs), shape=(count, count))
+        rates = self._rates(x)
+        geometric = self._geometric(pull, definite)
+        return csc_array(rates.T @ (coupled @ rates) + kron(geometric, eye_array(3)))
+
+    def tangent(self, x: FloatArray, *, definite: bool = False) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of the energy [J] by the strains of the edges at ``x``.
+
+        Returns
+        -------
+        material : (m, 3, 3)   second derivative of each triangle's energy by its edges' strains
+        pull : (e,)            first derivative of all; ``definite`` keeps the tensile stress only
+        """
+        self._deform(x)
+        material = np.empty((len(self._area), 3, 3))
+        kernels.edge_stiffness(
+            self._E,
+            self._natural,
+            self._area,
+            self._fabric,
+            *self._law,
+            self._constants,
+            material,
+        )
+        if self._unloading is not None:
+            self._unloading.stiffness(self._E, self._natural, self._area, material)
+        stress = self._stress()
+        if definite:
+            kernels.clamp(stress)
+        share = self._area[:, None] * np.einsum("tck,tc->tk", self._natural, stress)
+        of_face, count = self._edges.of_face.ravel(), len(self._edges.ends)
+        pull = np.bincount(of_face, share.ravel(), minlength=count)
+        return material, np.asarray(pull, dtype=np.float64)
+
+    def stiffness(self) -> csc_array:
+        """Scalar stiffness (n, n) [N/m] of plane triangles, warp and weft each with its own."""
+        return self._laplacian
+
+    @cached_property
+    def _split(self) -> tuple[csr_array, csr_array]:
+        """Slope along every edge and its bow as (e, n) matrices of one pattern."""
+        begin, nodes, values = self._rows
+        bow = csr_array((values, nodes, begin), shape=(len(begin) - 1, self._count))
+        return _common(tangent_matrix(self._count, self._edges), bow)
+
+    def _rates(self, x: FloatArray) -> csr_array:
+        """Derivative (e, 3n) of the edge strains by the positions."""
+        edges, (chord, arc) = self._edges, self._split
+        along = (x[edges.ends[:, 1]] - x[edges.ends[:, 0]]) / edges.length[:, None]
+        bowed = edges.length[:, None] ** 2 / 12.0 * self._bow
+        row = np.repeat(np.arange(len(edges.ends)), np.diff(chord.indptr))
+        values = along[row] * chord.data[:, None] + bowed[row] * arc.data[:, None]
+        columns = 3 * chord.indices[:, None] + np.arange(3)
+        shape = (len(edges.ends), x.size)
+        return csr_array((values.ravel(), columns.ravel(), 3 * chord.indptr), shape=shape)
+
+    def _geometric(self, pull: FloatArray, definite: bool) -> csr_array:
+        """Stiffness (n, n) of the stress at hand; chords and arcs of edges pull like strings."""
+        edges, (chord, arc) = self._edges, self._split
+        bend = edges.length**2 / 12.0 * (np.maximum(pull, 0.0) if definite else pull)
+        strings = chord.T @ chord.multiply(pull[:, None])
+        return csr_array(strings + arc.T @ arc.multiply(bend[:, None]))
+
+    def _stress(self) -> FloatArray:
+        """Stress (m, 3) [N/m] of the last strains."""
+        S = np.asarray(kernels.laws(self._E, self._fabric, *self._law, self._constants))
+        if self._unloading is not None:
+            self._unloading.stress(self._E, S)
+        return S
+
+    def _deform(self, x: FloatArray) -> None:
+        edges = self._edges
+        kernels.edge_strains(
+            x, edges.ends, edges.length, *self._rows, self._bow_offset, self._bow, self._edge_strain
+        )
+        kernels.strains(self._edge_strain, edges.of_face, self._natural, self._E)
+
+    def _plane_laplacian(self, count: int, fabrics: Sequence[Fabric]) -> csc_array:
+        warp = np.array([typical_stiffness(f.warp) for f in fabrics])[self._fabric]
+        weft = np.array([typical_stiffness(f.weft) for f in fabrics])[self._fabric]
+        # Stress diag(warp, weft) as a pull on every edge: the geometric stiffness it makes.
+        share = self._area[:, None] * (
+            self._natural[:, 0] * warp[:, None] + self._natural[:, 1] * weft[:, None]
+        )
+        of_face = self._edges.of_face.ravel()
+        pull = np.bincount(of_face, share.ravel(), minlength=len(self._edges.ends))
+        along = tangent_matrix(count, self._edges)
+        return csc_array(along.T @ along.multiply(pull[:, None]))
+
+
+def natural_strains(edges: Edges) -> FloatArray:
+    """Matrices (m, 3, 3) from the strains of a triangle's edges to (E11, E22, 2 E12)."""
+    t0, t1 = -edges.normal[edges.of_face, 1], edges.normal[edges.of_face, 0]
+    # Row k of the inverse pairs the other two directions: a x b over a . (b x c).
+    along = np.stack([t0 * t0, t1 * t1, t0 * t1], axis=2)
+    out = np.stack([np.cross(along[:, k - 2], along[:, k - 1]) for k in range(3)], axis=2)
+    volume = (along[:, 0] * out[:, :, 0]).sum(axis=1)
+    return np.ascontiguousarray(out / volume[:, None, None])
+
+
+def _bow_offset(edges: Edges, offset: FloatArray) -> FloatArray:
+    """What clamped slopes add to the second derivative along every edge, (e, 3) [1/m]."""
+    t0, t1 = -edges.normal[:, 1], edges.normal[:, 0]
+    mean = np.where(edges.free[:, None, None], offset[edges.faces[:, 0]], 0.0)
+    inner = ~edges.free
+    mean[inner] = offset[edges.faces[inner]].mean(axis=1)
+    along = np.stack([t0 * t0, t1 * t1, t0 * t1], axis=1)
+    return np.asarray(np.einsum("ec,eci->ei", along, mean))
+
+
+def _common(first: csr_array, second: csr_array) -> tuple[csr_array, csr_array]:
+    """Both matrices on the union of their patterns, zeros stored."""
+    ones = [
+        csr_array((np.ones(m.nnz), m.indices, m.indptr), shape=m.shape) for m in (first, second)
+    ]
+    union = csr_array(ones[0] + ones[1])
+    union.sort_indices()
+    empty = csr_array((np.zeros(union.nnz), union.indices, union.indptr), shape=union.shape)
+    place = csr_array((np.arange(1.0, union.nnz + 1), union.indices, union.indptr), union.shape)
+    spread = []
+    for matrix, mask in zip((first, second), ones, strict=True):
+        filled = empty.copy()
+        where = csr_array(place.multiply(mask))
+        where.sort_indices()
+        sorted_matrix = matrix.sorted_indices()
+        filled.data[where.data.astype(np.int64) - 1] = sorted_matrix.data
+        spread.append(filled)
+    return spread[0], spread[1]

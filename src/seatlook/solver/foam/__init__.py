@@ -1,0 +1,1 @@
+"""What lies below the cover: distance, contact, settlement, friction."""

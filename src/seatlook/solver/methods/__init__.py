@@ -1,0 +1,1 @@
+"""Ways to an equilibrium, and the matrices they work with."""

@@ -1,0 +1,61 @@
+"""The methods by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal, Protocol
+
+from seatlook.errors import InputError
+from seatlook.model import FloatArray
+from seatlook.solver.methods.explicit import DynamicRelaxation, Explicit
+from seatlook.solver.methods.factor import Preconditioner
+from seatlook.solver.methods.lbfgs import Descent, Lbfgs, Potential
+
+Method = Literal["lbfgs", "newton"] | Explicit
+MethodName = Literal["lbfgs", "newton", "explicit"]
+
+
+class Minimiser(Protocol):
+    """What lowers a potential; ``gradient`` is that of the last accepted point."""
+
+    gradient: FloatArray
+
+    def minimise(
+        self,
+        potential: Potential,
+        x: FloatArray,
+        factor: Preconditioner | None,
+        *,
+        done: Callable[[FloatArray], bool],
+        iterations: int,
+    ) -> Descent:
+        """Lower the potential in place of ``x`` until ``done`` with the gradient."""
+        ...
+
+
+def method_of(method: MethodName | Explicit) -> Method:
+    """Return the method of a name; "explicit" is ``Explicit()``.
+
+    Raises
+    ------
+    InputError   no such method
+
+    Examples
+    --------
+    >>> method_of("explicit")
+    Explicit(time_step=None, scale_mass=False)
+    """
+    if method == "explicit":
+        return Explicit()
+    if method in ("lbfgs", "newton") or isinstance(method, Explicit):
+        return method
+    raise InputError.single(
+        "method", got=repr(method), expected="'lbfgs', 'newton', 'explicit' or Explicit(...)"
+    )
+
+
+def minimiser(method: Method, shape: tuple[int, int], mass: FloatArray | None = None) -> Minimiser:
+    """Return what minimises over unknowns of ``shape``; ``mass`` is real, of the same shape."""
+    if isinstance(method, Explicit):
+        return DynamicRelaxation(shape, method, mass)
+    return Lbfgs(shape)

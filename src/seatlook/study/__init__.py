@@ -1,1 +1,0 @@
-"""Studies over several states, variants or lights."""

@@ -1,0 +1,1 @@
+"""Many covers: keys, variants and tolerances, and what they say together."""

@@ -1,0 +1,115 @@
+"""Where irregular covers wrinkle and how likely, and what those left out could change."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from seatlook import io, pbr
+from seatlook.assembly import assemble
+from seatlook.errors import InputError
+from seatlook.model import Cover, FloatArray
+from seatlook.solver import solve
+from seatlook.sweeps.cell import Cell, failed
+from seatlook.sweeps.summary import rows
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chance:
+    """Share of irregular covers whose W2 is above 1.
+
+    Covers that did not converge, or whose cell failed, have no W2 to count, and they are often
+    the most wrinkled: the share of all lies between the bounds and nothing narrower is known.
+
+    Parameters
+    ----------
+    share : (m,) face by face, of those that converged; nan where none did
+    converged, left_out : how many covers; those not run yet are in neither
+    """
+
+    share: FloatArray
+    converged: int
+    left_out: int
+
+    @property
+    def covers(self) -> int:
+        """All covers that were run."""
+        return self.converged + self.left_out
+
+    @property
+    def low(self) -> FloatArray:
+        """The share (m,) of all covers if none of those left out were above 1."""
+        return np.nan_to_num(self.share) * self.converged / self.covers
+
+    @property
+    def high(self) -> FloatArray:
+        """The share (m,) of all covers if all of those left out were above 1."""
+        return np.asarray(self.low + self.left_out / self.covers)
+
+
+def chance(cells: Sequence[Cell], folder: Path) -> Chance:
+    """Count the covers of some cells, on the faces of the cover as drawn.
+
+    Raises
+    ------
+    InputError
+        None of them converged.
+    """
+    found = rows(cells, folder)
+    good = {row["cell"] for row in found if row["status"] == "converged"}
+    left_out = len(found) - len(good) + sum(failed(cell, folder) for cell in cells)
+    above = [np.load(folder / f"{c.name}.npy") > 1 for c in cells if c.name in good]
+    if not above:
+        raise InputError.single(
+            "irregularity", got=f"none of {left_out} covers converged", expected="one or more"
+        )
+    return Chance(share=np.mean(above, axis=0), converged=len(above), left_out=left_out)
+
+
+def zone_chances(found: Chance, cover: Cover) -> list[dict[str, str | int | float]]:
+    """One row per zone of the cover as drawn: means by area, and where it is largest."""
+    area, listed = cover.rest_area, []
+    columns = {"": found.share, "_if_left_out_below": found.low, "_if_left_out_above": found.high}
+    for number, zone in enumerate(cover.zone_names):
+        mine = cover.zone == number
+        if not mine.any():
+            continue
+        row: dict[str, str | int | float] = {
+            "zone": zone, "converged": found.converged, "left_out": found.left_out,
+        }  # fmt: skip
+        for end, share in columns.items():
+            row[f"probability{end}"] = float(share[mine] @ area[mine] / area[mine].sum())
+            row[f"largest{end}"] = float(share[mine].max())
+        listed.append(row)
+    return listed
+
+
+def draw_chance(
+    cells: Sequence[Cell], found: Chance, path: Path
+) -> list[dict[str, str | int | float]]:
+    """Draw the probability that W2 is above 1 on the cover as drawn; return its zones."""
+    spec = json.loads(cells[0].spec)
+    scene = io.load_scene(spec["scene"], changes=spec["set"])
+    solution = solve(assemble(scene))
+    pbr.render_map(
+        solution,
+        found.share,
+        camera=scene.cameras[0],
+        title=_title(found),
+        unit="1",
+        value_range=(0.0, 1.0),
+        colormap="cividis",
+    ).save(path)
+    return zone_chances(found, solution.cover)
+
+
+def _title(found: Chance) -> str:
+    title = f"Probability that W2 is above 1: {found.converged} of {found.covers} covers"
+    if not found.left_out:
+        return f"{title}, all that were made"
+    most = found.left_out / found.covers
+    return f"{title} that converged; the others could change it by up to {most:.2f}"

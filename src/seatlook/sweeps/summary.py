@@ -1,0 +1,97 @@
+"""What a sweep found: one table of all cells, and the inputs that matter most."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from seatlook.errors import InputError
+from seatlook.sweeps.cell import Cell, finished
+from seatlook.sweeps.irregularity import rank_correlation
+
+MEASURES = ("w2_mean", "w2_p95", "w2_area_share", "w_stretch_mean", "w_compression_mean")
+FEWEST = 4  # converged covers from which ranks mean something
+OUTPUT = "w2_mean"  # over the whole cover; the share above 1 is often 0 in every cell
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cause:
+    """How an input goes with the mean of W2.
+
+    Parameters
+    ----------
+    correlation : Spearman's with the input, in [-1, 1]: more of it, more wrinkles
+    of_size : Spearman's with the input's size: any departure makes wrinkles, either way
+    noise : the size that 95 of 100 correlations without influence stay below
+    """
+
+    input: str
+    correlation: float
+    of_size: float
+    noise: float
+
+    @property
+    def strength(self) -> float:
+        """The larger of the two in size; 0 where W2 never changes."""
+        return max(abs(float(np.nan_to_num(v))) for v in (self.correlation, self.of_size))
+
+    @property
+    def matters(self) -> bool:
+        """Whether one of the correlations is above the noise."""
+        return self.strength > self.noise
+
+
+def rows(cells: Sequence[Cell], folder: Path) -> list[dict[str, Any]]:
+    """One row per finished cell: its settings, its status, and each measure over the cover."""
+    found = []
+    for cell in cells:
+        if not finished(cell, folder):
+            continue
+        result = json.loads((folder / f"{cell.name}.json").read_text(encoding="utf-8"))
+        row = {"cell": cell.name, "variant": result["variant"], "status": result["status"]}
+        for word in result["set"]:
+            key, _, value = word.partition("=")
+            row[key] = value
+        for tolerance, value in zip(result["inputs"], result["values"] or (), strict=False):
+            row[tolerance["name"]] = value
+        found.append(row | overall(result["zones"]))
+    return found
+
+
+def overall(zones: Sequence[dict[str, Any]]) -> dict[str, float]:
+    """Means over the zones, weighted by area, without free edges, which are clamped or trimmed."""
+    inner = [z for z in zones if z["zone"] != "free edge"]
+    area = np.array([z["area"] for z in inner])
+    return {m: float(area @ [z[m] for z in inner] / area.sum()) for m in MEASURES}
+
+
+def causes(cells: Sequence[Cell], folder: Path) -> tuple[Cause, ...]:
+    """Rank correlation of every irregular input, the strongest first.
+
+    Only cells that converged count.
+
+    Raises
+    ------
+    InputError
+        Fewer than ``FEWEST`` of them.
+    """
+    good = [r for r in rows(cells, folder) if r["status"] == "converged"]
+    names = [i["name"] for i in json.loads(cells[0].spec)["inputs"]]
+    if len(good) < FEWEST:
+        raise InputError.single(
+            "irregularity", got=f"{len(good)} converged", expected=f"{FEWEST} or more"
+        )
+    drawn = np.array([[row[name] for name in names] for row in good])
+    output = np.array([row[OUTPUT] for row in good])
+    found, noise = rank_correlation(drawn, output)
+    sizes, _ = rank_correlation(np.abs(drawn), output)
+    listed = [
+        Cause(input=name, correlation=float(value), of_size=float(size), noise=noise)
+        for name, value, size in zip(names, found, sizes, strict=True)
+    ]
+    return tuple(sorted(listed, key=lambda c: -c.strength))

@@ -1,0 +1,1 @@
+"""How visible the wrinkles of a solved cover are to people."""

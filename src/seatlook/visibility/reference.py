@@ -1,0 +1,258 @@
+"""The cover without its wrinkles, seen from one camera: what a score compares with.
+
+Vertices move along their camera rays only, so every pixel keeps its panel, its texture, its seam
+and its silhouette; a texture shifted by one pixel would outscore any wrinkle.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import distance_transform_edt
+
+from seatlook.errors import InputError
+from seatlook.mesh import vertex_normals
+from seatlook.model import Camera, Cover, FloatArray, Foam, Solution
+from seatlook.model.zones import FREE_EDGE
+from seatlook.pbr import Studio
+from seatlook.solver.foam.distance import DistanceField, distance_field
+from seatlook.wrinkle import low_passed
+
+# What a score compares with: the cover smoothed along the camera's rays; the cover as it is, shaded
+# with the normals of that; the surface that was designed.
+Mode = Literal["view-ray", "normals", "design"]
+# Waves up to this length [m] count as wrinkles; demo covers wrinkle on their foam at 63 mm.
+CUTOFF = 0.1
+# The foam's facets show up as waves of its element size: shorter ones than this many of the
+# cover's elements, which it could not show rightly either, stay in the reference.
+_RESOLVED = 3.0
+# Cosine between ray and normal from which a pixel is scored; vertices are held below its half,
+# where a ray tells width rather than depth, and on the far side.
+_GRAZING = 0.2
+# Pixels beside a silhouette that are left out: the finest bands reach this far.
+_SILHOUETTE = 6
+_PASSES, _FAR_PASSES = 3, 8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Region:
+    """Where a score is taken, pixel by pixel.
+
+    Parameters
+    ----------
+    mask : (h, w) bool            zones that count, away from seams, edges and silhouettes
+    face : (h, w) int64           face of the solution, -1 where the pixel shows none
+    zone : (h, w) int64           zone of that face, -1 outside the mask
+    area : (h, w) float64 [m2]    of the surface that the pixel shows, 0 where none
+    """
+
+    mask: npt.NDArray[np.bool_]
+    face: npt.NDArray[np.int64]
+    zone: npt.NDArray[np.int64]
+    area: FloatArray
+
+
+def smooth_reference(solution: Solution, camera: Camera, *, cutoff: float = CUTOFF) -> Solution:
+    """Take the waves shorter than ``cutoff`` out of the cover, along the rays of one camera.
+
+    With a foam the *distance from its surface* is smoothed, so that crown, bolsters and trenches,
+    which belong to the design, stay as they are whatever their radius; without one the shape
+    itself is. Outlines of panels, and with them all seams, hooks and frames, keep their place.
+    Of a wave of the cut-off length half stays.
+
+    Parameters
+    ----------
+    cutoff : float [m]
+
+    Returns
+    -------
+    Solution
+        The same in all but its positions; not an equilibrium.
+
+    Raises
+    ------
+    InputError
+        A cut-off of 0 or less, a camera inside the cover.
+    """
+    if not cutoff > 0:
+        raise InputError.single("cutoff", got=cutoff, expected="a wavelength above 0 m")
+    cover, x = solution.cover, np.array(solution.positions)
+    if cover.foam is None:
+        ray = _rays(camera, x)
+        off, normal = _off_smooth_shape(cover, x, cutoff)
+        step = off * _seen(-_dot(normal, ray))
+        return replace(solution, positions=x + step[:, None] * ray)
+    height, _ = field_of(cover.foam).at(x)
+    height = np.where(np.isfinite(height), height, 0.0)
+    wanted = height - _band(cover, height, cutoff)
+    return _moved(solution, cover.foam, camera, wanted, passes=_PASSES)
+
+
+def design_reference(solution: Solution, camera: Camera) -> Solution:
+    """Lay the cover on the foam as designed, half its thickness above it, along the camera's rays.
+
+    Unlike the smoothed shape it holds no sag and no standoff either: whatever the cover does
+    otherwise than drawn counts as visible.
+
+    Raises
+    ------
+    InputError
+        No foam, a camera inside the cover.
+    """
+    wanted = half_thickness(solution.cover)
+    return _moved(solution, foam_of(solution.cover), camera, wanted, passes=_FAR_PASSES)
+
+
+def foam_of(cover: Cover) -> Foam:
+    """Return the foam below a cover; InputError where there is none."""
+    if cover.foam is None:
+        raise InputError.single("foam", got="none", expected="the surface the cover was made for")
+    return cover.foam
+
+
+def half_thickness(cover: Cover) -> FloatArray:
+    """Height (n,) [m] at which the mid surface lies over the foam."""
+    half = np.zeros(len(cover.rest))
+    np.maximum.at(half, cover.faces.ravel(), np.repeat(cover.thickness / 2, 3))
+    return half
+
+
+def _moved(
+    solution: Solution, foam: Foam, camera: Camera, wanted: FloatArray, *, passes: int
+) -> Solution:
+    """Move vertices along their rays to the height (n,) over the foam that is wanted."""
+    x = np.array(solution.positions)
+    field, ray = field_of(foam), _rays(camera, x)
+    height, normal = field.at(x)
+    known = np.isfinite(height)
+    for _ in range(passes):
+        off = np.where(known & np.isfinite(height), height - wanted, 0.0)
+        x += (off * _seen(-_dot(normal, ray)))[:, None] * ray
+        height, normal = field.at(x)
+    return replace(solution, positions=x)
+
+
+def _rays(camera: Camera, x: FloatArray) -> FloatArray:
+    """Unit vectors (n, 3) from the camera to points."""
+    ray = x - camera.position
+    length = np.linalg.norm(ray, axis=1, keepdims=True)
+    if not length.min() > 0:
+        raise InputError.single("camera.position", got="on the cover", expected="away from it")
+    return np.asarray(ray / length)
+
+
+_fields: OrderedDict[int, tuple[Foam, DistanceField]] = OrderedDict()
+
+
+def field_of(foam: Foam) -> DistanceField:
+    """Distance from a foam; those of the last two are kept, with their foams."""
+    if id(foam) not in _fields:
+        _fields[id(foam)] = foam, distance_field(foam.vertices, foam.faces)
+        if len(_fields) > 2:
+            _fields.popitem(last=False)
+    return _fields[id(foam)][1]
+
+
+def waves(solution: Solution, *, cutoff: float = CUTOFF) -> FloatArray:
+    """Height (n,) [m] of every vertex over the smooth shape, along its normal."""
+    cover, x = solution.cover, np.array(solution.positions)
+    if cover.foam is None:
+        return _off_smooth_shape(cover, x, cutoff)[0]
+    height, _ = field_of(cover.foam).at(x)
+    return _band(cover, np.where(np.isfinite(height), height, 0.0), cutoff)
+
+
+def standing_off(solution: Solution) -> FloatArray:
+    """Height (n,) [m] of every vertex over the designed surface; 0 where there is no foam below."""
+    height, _ = field_of(foam_of(solution.cover)).at(np.array(solution.positions))
+    return np.where(np.isfinite(height), height - half_thickness(solution.cover), 0.0)
+
+
+def _off_smooth_shape(cover: Cover, x: FloatArray, cutoff: float) -> tuple[FloatArray, FloatArray]:
+    """Height (n,) over the low-passed shape itself, and its normals (n, 3)."""
+    smooth = low_passed(cover, x, wavelength=cutoff)
+    normal = vertex_normals(smooth, cover.faces)
+    return _dot(normal, x - smooth), normal
+
+
+def _band(cover: Cover, height: FloatArray, cutoff: float) -> FloatArray:
+    """Part of a height (n,) in waves between the element size and ``cutoff``; 0 on outlines."""
+    short = height - low_passed(cover, height[:, None], wavelength=cutoff)[:, 0]
+    resolved = _RESOLVED * cover.element_size
+    return low_passed(cover, short[:, None], wavelength=resolved)[:, 0]
+
+
+def region(studio: Studio, camera: Camera, *, zones: tuple[str, ...] | None = None) -> Region:
+    """Find the pixels that are scored.
+
+    Parameters
+    ----------
+    zones : names to take; None = all but seam bands and free edges
+
+    Raises
+    ------
+    InputError
+        An unknown zone, or no pixel left.
+    """
+    cover = studio.solution.cover
+    names = cover.zone_names
+    if zones is None:
+        zones = tuple(n for n in names if n != FREE_EDGE and not n.startswith("seam "))
+    unknown = sorted(set(zones) - set(names))
+    if unknown:
+        raise InputError.single(
+            "zones", got=repr(unknown[0]), expected=f"some of {', '.join(names)}"
+        )
+    face = solver_faces(studio, camera)
+    cosine, area = _pixel_area(studio.solution, camera, face)
+    zone = np.where(face >= 0, cover.zone[face], -1)
+    edge = (face < 0) | (cosine < _GRAZING)
+    # The nearest pixel of a silhouette is the nearest one that shows no cover or a grazing face.
+    away = distance_transform_edt(~edge) > _SILHOUETTE if edge.any() else np.ones(face.shape, bool)
+    wanted = np.isin(zone, [names.index(name) for name in zones])
+    mask = wanted & away
+    if not mask.any():
+        raise InputError.single(
+            f"camera {camera.name}", got="no pixel of the zones", expected="a view of them"
+        )
+    return Region(mask=mask, face=face, zone=np.where(mask, zone, -1), area=area)
+
+
+def solver_faces(studio: Studio, camera: Camera) -> npt.NDArray[np.int64]:
+    """Face of the solution that each pixel shows, (h, w), -1 for foam and background."""
+    drawn = studio.faces(camera).astype(np.int64)
+    panels = studio.surface.faces
+    children = panels // len(studio.solution.cover.faces)
+    return np.where((drawn >= 0) & (drawn < panels), drawn // children, -1)
+
+
+def _pixel_area(
+    solution: Solution, camera: Camera, face: npt.NDArray[np.int64]
+) -> tuple[FloatArray, FloatArray]:
+    """Cosine between ray and face, and the area [m2] a pixel covers on it; both (h, w)."""
+    p = solution.positions[solution.cover.faces]
+    vector = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    ray = camera.position - p.mean(axis=1)
+    distance = np.linalg.norm(ray, axis=1)
+    cosine = _dot(vector, ray) / (np.linalg.norm(vector, axis=1) * distance)
+    forward = camera.target - camera.position
+    depth = -ray @ (forward / np.linalg.norm(forward))
+    pixel = 2 * np.tan(np.radians(camera.vertical_fov_deg) / 2) / camera.size[1]
+    # depth pixel is the pixel's side on a plane across the view; distance / depth turns it.
+    area = (depth * pixel) ** 2 * (depth / distance) / np.maximum(cosine, 1e-3)
+    shown = face >= 0
+    return np.where(shown, cosine[face], 0.0), np.where(shown, area[face], 0.0)
+
+
+def _seen(cosine: FloatArray) -> FloatArray:
+    """Way along the ray per height, faded out from grazing views to the far side."""
+    fade = np.clip(2 * cosine / _GRAZING - 1, 0.0, 1.0)
+    return np.asarray(fade / np.maximum(cosine, _GRAZING / 2))
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("ij,ij->i", a, b))

@@ -1,0 +1,226 @@
+"""A scene started from a pattern and a foam of one's own: what is guessed, and what is said."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from seatlook import assemble, io
+from seatlook.assembly.seam_guess import propose_seams
+from seatlook.assembly.unfolding import CLEAR, lay_out
+from seatlook.cli import run
+from seatlook.errors import InputError
+from seatlook.model import Pattern
+from seatlook.solver.foam.distance import distance_field
+
+DATA = Path(__file__).parents[1] / "data"
+
+
+@pytest.fixture(scope="module")
+def own(demo_scene: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with nothing but a pattern and a foam."""
+    folder = tmp_path_factory.mktemp("own")
+    shutil.copy(demo_scene.with_name("pattern.dxf"), folder / "cover.dxf")
+    shutil.copy(demo_scene.with_name("foam.obj"), folder / "foam.obj")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def started(own: Path) -> Path:
+    assert (
+        run(["init", str(own / "cover.dxf"), str(own / "foam.obj"), "--out", str(own / "a")]) == 0
+    )
+    return own / "a"
+
+
+def sewn(pattern: Pattern) -> set[frozenset[tuple[str, int, int]]]:
+    """Seams as sets of stretches, whatever edges and seams are called."""
+    ends = {e.name: (e.panel, e.start, e.end) for e in pattern.edges.values()}
+    return {frozenset(ends[name] for name in (s.a, *s.b)) for s in pattern.seams}
+
+
+def test_all_seams_of_the_demo_are_found_and_no_other(demo_scene):
+    true = io.load_scene(demo_scene).pattern
+    found = propose_seams(true.panels)
+    # One panel is cut 1 % small: lengths agree to a percent only.
+    assert sewn(found.pattern) == sewn(true)
+    assert len(found.free) == 4
+    assert set(found.reasons) == {s.name for s in found.pattern.seams}
+
+
+def test_one_edge_on_three_is_found_by_notches_at_the_joints():
+    true = io.read_pattern(
+        DATA / "seat_cushion_demo_aama.dxf", DATA / "seat_cushion_demo.seams.toml"
+    )
+    found = propose_seams(true.panels)
+    assert sewn(found.pattern) == sewn(true)
+    assert sorted(len(s.b) for s in found.pattern.seams) == [1, 1, 3]
+
+
+def test_the_scene_is_complete_and_its_comments_stay(started):
+    scene = io.load_scene(started / "scene.toml", changes=["mesh.element_size_mm=20"])
+    cover = assemble(scene)
+    assert len(scene.pattern.seams) == 14
+    assert len(scene.frames) == 4
+    assert len(cover.panel_names) == 7
+    text = (started / "scene.toml").read_text()
+    assert "The seams are guessed: read them over." in text
+    assert "# [[hook]]" in text
+    seams = (started / "seams.toml").read_text()
+    assert seams.count("# ") == 14
+    assert "notches meet" in seams
+
+
+def test_panels_start_clear_of_the_foam_and_joined_at_their_seams(started):
+    scene = io.load_scene(started / "scene.toml")
+    field = distance_field(scene.foam.vertices, scene.foam.faces)
+    placed = {}
+    for panel in scene.pattern.panels:
+        pose = scene.placement[panel.name]
+        placed[panel.name] = pose
+        x = panel.outline @ pose.rotation[:, :2].T + pose.translation
+        assert field.at(x)[0].min() > 0.9 * CLEAR
+        # The visible side looks away from the foam.
+        middle = x.mean(axis=0) - scene.foam.vertices.mean(axis=0)
+        assert pose.rotation[:, 2] @ middle > 0
+    gaps = []
+    for seam in scene.pattern.seams:
+        ends = []
+        for name in (seam.a, *seam.b):
+            pose = placed[scene.pattern.edges[name].panel]
+            line = scene.pattern.edge_points(name)
+            ends.append(line.mean(axis=0) @ pose.rotation[:, :2].T + pose.translation)
+        gaps.append(float(np.linalg.norm(ends[0] - np.mean(ends[1:], axis=0))))
+    assert sorted(gaps)[5] < 0.02  # the six that carry a panel, each a slightly curved line
+
+
+def test_free_edges_are_pulled_to_curves_of_their_length(started):
+    scene = io.load_scene(started / "scene.toml")
+    for frame in scene.frames:
+        curve = scene.foam.curves[frame.curve]
+        length = np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()
+        assert length == pytest.approx(scene.pattern.edge_length(frame.edges[0]), rel=0.06)
+
+
+def test_curves_of_neighbours_share_their_ends(started):
+    curves = io.load_scene(started / "scene.toml").foam.curves
+    ends = np.array([curve[k] for curve in curves.values() for k in (0, -1)])
+    away = np.linalg.norm(ends[:, None] - ends, axis=2) + np.diag(np.ones(len(ends)))
+    assert away.min(axis=1).max() < 1e-9
+
+
+def test_wires_are_hooked_to_the_seams_above_them(own, demo_scene, capsys):
+    words = ["init", str(own / "cover.dxf"), str(own / "foam.obj"), "--out", str(own / "b")]
+    assert run([*words, "--wires", str(demo_scene.with_name("wires.toml")), "--json"]) == 0
+    said = capsys.readouterr()
+    assert len(json.loads(said.out)) == 14
+    scene = io.load_scene(own / "b" / "scene.toml")
+    assert {hook.wire for hook in scene.hooks} == {"trench_left", "trench_right"}
+    for hook in scene.hooks:
+        side = "L" if hook.wire.endswith("left") else "R"
+        assert hook.line in (f"BOLSTER_{side} 3 - INSERT", f"BOLSTER_{side} 4 - INSERT")
+
+
+def test_a_foam_in_other_axes_is_told_by_its_size(own, tmp_path, capsys):
+    body = io.read_foam(own / "foam.obj", material=io.read_foam_material("foam-seat"), unit="mm")
+    x, y, z = body.vertices.T
+    io.write_obj(np.column_stack([x, z, -y]), body.faces, tmp_path / "turned.obj")
+    words = ["init", str(own / "cover.dxf"), str(tmp_path / "turned.obj"), "--out"]
+    run([*words, str(tmp_path / "a")])
+    assert "if its file's vertical axis is y, say --up y" in capsys.readouterr().err
+    run([*words, str(tmp_path / "b"), "--up", "y"])
+    said = capsys.readouterr().err
+    assert "say --up" not in said
+    width, depth, height = np.ptp(body.vertices, axis=0) * 1e3
+    assert f"foam: {width:.0f} mm wide, {depth:.0f} mm deep, {height:.0f} mm high" in said
+
+
+def test_check_says_how_to_go_on_and_puts_the_largest_ease_first(started, capsys):
+    assert run(["check", str(started / "scene.toml"), "--element-size-mm", "20"]) == 0
+    said = capsys.readouterr()
+    assert "nothing wrong; to solve and draw it: seatlook evaluate" in said.err
+    lines = said.out.splitlines()
+    rows = lines[next(k for k, line in enumerate(lines) if line.startswith("seam ")) + 1 :]
+    shares = [abs(float(row.split()[-5])) for row in rows]
+    assert shares == sorted(shares, reverse=True)
+    assert shares[0] > 0.5
+
+
+def test_edits_are_not_written_over(started, own, capsys):
+    words = ["init", str(own / "cover.dxf"), str(own / "foam.obj"), "--out", str(started)]
+    before = (started / "scene.toml").read_bytes()
+    assert run(words) == 2
+    assert "expected a new one, or --force" in capsys.readouterr().err
+    assert (started / "scene.toml").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (["--top", "INSRT"], "--top: got 'INSRT', expected one of INSERT,"),
+        (["--material", "leather"], "--"),
+        (["--unit", "m"], "expected"),
+        (["--foam-material", "foam"], "foam"),
+    ],
+)
+def test_wrong_words_leave_nothing(own, tmp_path, capsys, change, message):
+    out = tmp_path / "out"
+    words = ["init", str(own / "cover.dxf"), str(own / "foam.obj"), "--out", str(out)]
+    assert run([*words, *change]) == 2
+    assert message.strip("-") in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_a_panel_that_nothing_joins_is_named(demo_scene):
+    scene = io.load_scene(demo_scene)
+    alone = Pattern(
+        panels=scene.pattern.panels,
+        edges=scene.pattern.edges,
+        seams=tuple(s for s in scene.pattern.seams if "REAR" not in s.name),
+    )
+    with pytest.raises(InputError, match="got none that joins REAR to INSERT"):
+        lay_out(alone, scene.foam)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["mesh.seed"], "--set: got 'mesh.seed', expected KEY=VALUE"),
+        (["rig.sn.ev100=3"], "expected a row from 0 to 1, or one of sun, bulb (did you mean 'sun'"),
+        (["rig.9.ev100=3"], "expected a row from 0 to 1"),
+        (["mesh.sed=3"], "mesh.sed: got unknown key, expected one of element_size_mm, "),
+        (["mesh.seed=high"], "mesh.seed: got 'high', expected a whole number"),
+        (["name.of=3"], "expected name to be a table"),
+    ],
+)
+def test_a_key_set_wrongly_is_told(started, capsys, words, message):
+    changes = [part for word in words for part in ("--set", word)]
+    assert run(["check", str(started / "scene.toml"), *changes]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_keys_are_set_over_those_of_the_file(started):
+    path = started / "scene.toml"
+    plain = io.load_scene(path)
+    changed = io.load_scene(
+        path,
+        changes=["mesh.seed=7", "rig.bulb.light.0.lumen=400", "pattern.material=suede-laminate"],
+    )
+    assert changed.seed == 7
+    assert changed.rigs[1].lights[0].intensity == plain.rigs[1].lights[0].intensity / 2
+    assert {m.name for m in changed.materials.values()} == {"suede-laminate"}
+    assert changed.digest != plain.digest
+    assert io.load_scene(path, changes=["mesh.seed=7"]).digest != changed.digest
+
+
+def test_a_dry_run_lists_the_cells_and_makes_nothing(started, tmp_path, capsys):
+    words = ["evaluate", str(started / "scene.toml"), "--out", str(tmp_path / "o"), "--dry-run"]
+    assert run([*words, "--json"]) == 0
+    cells = json.loads(capsys.readouterr().out)
+    assert len(cells) == 3 * 2
+    assert cells[0]["ev100"] == pytest.approx(15.3, abs=0.5)
+    assert not (tmp_path / "o").exists()

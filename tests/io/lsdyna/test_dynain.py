@@ -1,0 +1,61 @@
+"""What is written as dynain is read back with the same indices."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatlook import wrinkle
+from seatlook.errors import InputError
+from seatlook.io.lsdyna.dynain import write_dynain
+from seatlook.io.lsdyna.keyword import read_keyword
+from seatlook.shells.strains import shell_indices
+from support.wrinkle_samples import shaped, wave
+
+
+def solved():
+    q = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
+    q *= np.linalg.det(q)
+    flat = wave(0.0005, 0.04)
+    return shaped(lambda X: flat(X * [1.03, 0.98]) @ q.T, h=0.01, panels=2)
+
+
+@pytest.mark.parametrize("unit", ["mm", "m", "inch"])
+@pytest.mark.parametrize("mode", ["paper", "tensor"])
+def test_indices_survive_the_file(tmp_path, unit, mode):
+    solution = solved()
+    path = tmp_path / "cover.dynain"
+    write_dynain(solution, path, length_unit=unit)
+    result = read_keyword(path, length_unit=unit)
+    state = result.read(0)
+    np.testing.assert_allclose(state.positions, solution.positions, rtol=1e-8, atol=1e-10)
+    np.testing.assert_allclose(state.thickness, solution.cover.thickness, rtol=1e-8)
+    assert (result.shells.part == solution.cover.panel + 1).all()
+    assert (result.shells.corners[:, :3] == solution.cover.faces).all()
+    here = wrinkle.wrinkle_indices(
+        *wrinkle.surface_strains(solution), solution.cover.thickness, 20.0, mode,
+        strain_measure="logarithmic",
+    )  # fmt: skip
+    read = shell_indices(result.shells, state, curvature=mode, c_threshold=20.0)
+    assert read.turned == 0
+    np.testing.assert_allclose(read.indices.c, here.c, rtol=1e-6, atol=1e-5)
+    np.testing.assert_allclose(read.indices.w2, here.w2, rtol=1e-6, atol=1e-6)
+    # The file holds two surfaces; the mean of their logarithms is not that of the mid surface.
+    for name in ("r_stretch", "w_stretch", "w_compression"):
+        np.testing.assert_allclose(getattr(read.indices, name), getattr(here, name), atol=1e-3)
+
+
+def test_strange_names_and_impossible_strains(tmp_path):
+    solution = solved()
+    names = ("P0\n*NODE\n1", "Wange links")
+    named = dataclasses.replace(
+        solution, cover=dataclasses.replace(solution.cover, panel_names=names)
+    )
+    write_dynain(named, tmp_path / "a.k")
+    assert len(read_keyword(tmp_path / "a.k").shells) == len(solution.cover.faces)
+    crushed = dataclasses.replace(solution, strain_top=np.full_like(solution.strain_top, -0.6))
+    with pytest.raises(InputError, match="strains: got -1/2 or less"):
+        write_dynain(crushed, tmp_path / "b.k")
+    assert not (tmp_path / "b.k").exists()
+    with pytest.raises(InputError, match="length_unit: got 'ft'"):
+        write_dynain(solution, tmp_path / "b.k", length_unit="ft")

@@ -1,0 +1,61 @@
+"""Reflected share of a surface in a white furnace, by quadrature that resolves every lobe."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from seatlook.pbr.reflectance.tables import load_tables
+from seatlook.pbr.shading.kernels.brdf import D_GGX, brdf, view_of
+from seatlook.pbr.shading.kernels.lookup import lookup_mean
+from seatlook.pbr.shading.kernels.tables import coupling, fibres
+from seatlook.pbr.shading.studio import NAP_NODES, pack_materials
+
+
+def reflected(appearance, v, n=256):
+    """Reflected share (3,) towards ``v`` (3,) of a light equal from everywhere.
+
+    Half of the nodes are spread evenly over the light's hemisphere, half over the half-vector's
+    narrowest GGX lobe; the balance heuristic weighs them (Veach 1995).
+    """
+    tables, material = load_tables(), pack_materials([appearance])
+    row, nap = np.empty((1, len(tables.scale_mean))), np.empty((1, NAP_NODES))
+    coupling(tables, material, row)
+    fibres(tables, material, nap)
+    seen = view_of(tables, material[0], appearance.roughness, tuple(appearance.albedo), *v)
+    alpha = min(seen.alpha_x, seen.alpha_y)
+    if appearance.coat > 0:
+        alpha = min(alpha, appearance.coat_roughness**2)
+    total = np.zeros(3)
+    mean = lookup_mean(row[0], seen.table_roughness)
+    _quadrature(tables, material, nap[0], mean, seen, alpha, n, total)
+    return total
+
+
+@njit(cache=True)
+def _quadrature(tables, materials, nap, mean, seen, alpha, n, total):
+    f = np.zeros(3)
+    vx, vy, vz = seen.ToV, seen.BoV, seen.NoV
+    for i in range(n):
+        a = (i + 0.5) / n
+        cos_h = np.sqrt((1 - a) / (1 + (alpha**2 - 1) * a))
+        sin_h = np.sqrt(1 - cos_h**2)
+        for j in range(n):
+            phi = 2 * np.pi * (j + 0.5) / n
+            for kind in range(2):
+                if kind == 0:
+                    x, y, z = np.sqrt(a) * np.cos(phi), np.sqrt(a) * np.sin(phi), np.sqrt(1 - a)
+                else:
+                    x, y, z = sin_h * np.cos(phi), sin_h * np.sin(phi), cos_h
+                    c = 2 * (x * vx + y * vy + z * vz)
+                    x, y, z = c * x - vx, c * y - vy, c * z - vz
+                if z <= 1e-9:
+                    continue
+                hx, hy, hz = x + vx, y + vy, z + vz
+                s = 1 / np.sqrt(hx * hx + hy * hy + hz * hz)
+                hx, hy, hz = hx * s, hy * s, hz * s
+                VoH = max(hx * vx + hy * vy + hz * vz, 1e-12)
+                density = z / np.pi + D_GGX(alpha, alpha, hx, hy, hz) * hz / (4 * VoH)
+                brdf(tables, materials[0], nap, mean, seen, 0.0, x, y, z, f)
+                for k in range(3):
+                    total[k] += f[k] * z / density / (n * n)

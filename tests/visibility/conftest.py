@@ -1,0 +1,3 @@
+from support.spoiled import spoiled
+
+__all__ = ["spoiled"]
