@@ -6,8 +6,10 @@
     ├── InputError(ValueError)      a file, option or argument is wrong      exit 2
     │   └── AssemblyError           the parts are fine, together they are not
     ├── SolverError                 the solver cannot give a result
-    │   ├── ConvergenceError        carries the last Solution
-    │   └── InvertedElementError
+    │   ├── InvertedElementError
+    │   ├── ConvergenceError        seatlook.solver: carries the last Solution
+    │   ├── SheetError              seatlook.solver: carries the last SheetSolution
+    │   └── UnstableStepError       seatlook.solver: the explicit time step is too long
     └── RenderError                 no picture, or a wrong one
         └── NoOffscreenContext      no software GL library on this machine
 
@@ -20,10 +22,7 @@ import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
-
-if TYPE_CHECKING:
-    from seatlook.model import Solution
+from typing import ClassVar
 
 
 class SeatlookError(Exception):
@@ -98,14 +97,6 @@ class InputWarning(UserWarning):
 
 class SolverError(SeatlookError):
     """The solver cannot give a result."""
-
-
-class ConvergenceError(SolverError):
-    """The solver stopped before equilibrium; ``solution`` is the last state it had."""
-
-    def __init__(self, reason: str, solution: Solution) -> None:
-        super().__init__(reason)
-        self.solution = solution
 
 
 class InvertedElementError(SolverError):

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from seatlook import model
-from seatlook.errors import ConvergenceError, InputError, InvertedElementError
-from seatlook.solver import solve
+from seatlook.errors import InputError, InvertedElementError
+from seatlook.solver import ConvergenceError, solve
 from seatlook.solver.process.process import Process
 from support.covers import (
     cover,

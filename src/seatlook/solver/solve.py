@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from seatlook import __version__
-from seatlook.errors import ConvergenceError, InputError
+from seatlook.errors import InputError, SolverError
 from seatlook.model import Cover, FloatArray, Solution, stage_units
 from seatlook.solver.methods.choice import MethodName, method_of
 from seatlook.solver.methods.explicit import Explicit
@@ -25,6 +25,14 @@ _REST_ITERATIONS = 300  # of one round
 _MOST_ITERATIONS = 10_000  # of all rounds
 _KICK, _KICKS = 0.5, 5  # thickness; how often an unstable balance is left
 _REFACTOR = 3  # time steps that share a factor
+
+
+class ConvergenceError(SolverError):
+    """The solver stopped before equilibrium; ``solution`` is the last state it had."""
+
+    def __init__(self, reason: str, solution: Solution) -> None:
+        super().__init__(reason)
+        self.solution = solution
 
 
 class Progress(Protocol):
