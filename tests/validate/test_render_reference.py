@@ -23,7 +23,7 @@ pytestmark = [
 ]
 # (direct light, full light)
 BARS = {2: 0.006, 8: 0.02}
-MISSED = pytest.mark.xfail(strict=True, reason="met in T4 only; see docs/renderer.md")
+MISSED = pytest.mark.xfail(strict=True, reason="met in T4 only; see docs/method/renderer.md")
 
 
 @pytest.fixture(scope="module")

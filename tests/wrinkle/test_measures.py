@@ -28,8 +28,8 @@ STATES = {
 
 
 def table():
-    """Rows of the table of edge cases in docs/indices.md."""
-    text = (Path(__file__).parents[2] / "docs" / "indices.md").read_text()
+    """Rows of the table of edge cases in docs/reference/indices.md."""
+    text = (Path(__file__).parents[2] / "docs" / "reference" / "indices.md").read_text()
     rows = text.partition("| major |")[2].splitlines()[2:]
     cells = [[c.strip() for c in r.strip("|").split("|")] for r in rows]
     return cells[: cells.index([""])]

@@ -1,4 +1,7 @@
-"""The sweep file: a scene, values to go through, and tolerances to draw from. See docs/sweep.md."""
+"""The sweep file: a scene, values to go through, and tolerances to draw from.
+
+See docs/how-to/sweep.md.
+"""
 
 from __future__ import annotations
 

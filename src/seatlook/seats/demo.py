@@ -1,4 +1,7 @@
-"""The demo seat: design surface, foam and wires of one procedural cushion (docs/demo-seat.md)."""
+"""The demo seat: design surface, foam and wires of one procedural cushion.
+
+See docs/reference/demo-seat.md.
+"""
 
 from __future__ import annotations
 

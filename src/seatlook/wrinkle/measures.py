@@ -1,7 +1,7 @@
 """Measures that stand beside the paper's: signed ratio, tension field, net curvature.
 
 The stretch ratio of eq. (4) calls pure shear balanced, jumps where the major strain passes 0 and
-answers to noise. Nothing here replaces it; ``docs/indices.md`` shows both answers side by side.
+answers to noise. Nothing here replaces it; ``docs/reference/indices.md`` shows both side by side.
 """
 
 from __future__ import annotations

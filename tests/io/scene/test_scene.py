@@ -14,7 +14,9 @@ from seatlook.wrinkle import ZoneRow
 from support.io_samples import box
 
 ROOT = Path(__file__).parents[3]
-EXAMPLE = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "scene.md").read_text(), re.DOTALL)[0]
+EXAMPLE = re.findall(
+    r"```toml\n(.*?)```", (ROOT / "docs" / "reference" / "scene.md").read_text(), re.DOTALL
+)[0]
 
 
 @pytest.fixture
@@ -117,7 +119,9 @@ def test_smallest_scene_takes_the_defaults(load):
 
 
 def test_example_files_of_the_page_read(folder, load):
-    blocks = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "scene.md").read_text(), re.DOTALL)
+    blocks = re.findall(
+        r"```toml\n(.*?)```", (ROOT / "docs" / "reference" / "scene.md").read_text(), re.DOTALL
+    )
     assert len(blocks) == 3
     sample = (folder / "cover.seams.toml").read_text()
     head, seam = blocks[1].split("[[seam]]")

@@ -16,7 +16,9 @@ from seatlook.io.surface import write_obj
 from support.io_samples import box
 
 ROOT = Path(__file__).parents[3]
-EXAMPLE = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "scene.md").read_text(), re.DOTALL)[0]
+EXAMPLE = re.findall(
+    r"```toml\n(.*?)```", (ROOT / "docs" / "reference" / "scene.md").read_text(), re.DOTALL
+)[0]
 
 
 @pytest.fixture

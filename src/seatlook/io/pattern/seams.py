@@ -98,7 +98,7 @@ def read_pattern(
     Parameters
     ----------
     path : pattern file (AAMA DXF)
-    seams : seams file; see docs/scene.md
+    seams : seams file; see docs/reference/scene.md
     size, units, smallest_notch : as in ``read_dxf``
 
     Raises

@@ -1,4 +1,7 @@
-"""Every key of a scene file, with its type, range and default; docs/scene.md explains them."""
+"""Every key of a scene file, with its type, range and default.
+
+docs/reference/scene.md explains them.
+"""
 
 from __future__ import annotations
 

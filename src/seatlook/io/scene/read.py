@@ -1,4 +1,7 @@
-"""The scene file: everything one run needs, read and checked together. See docs/scene.md."""
+"""The scene file: everything one run needs, read and checked together.
+
+See docs/reference/scene.md.
+"""
 
 from __future__ import annotations
 

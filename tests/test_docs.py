@@ -1,0 +1,160 @@
+"""What the pages say is so: links, files, names, commands with their options, the example."""
+
+from __future__ import annotations
+
+import pkgutil
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from cyclopts import App
+
+from seatlook.cli import app
+
+ROOT = Path(__file__).parents[1]
+PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "tests").rglob("*.md")]
+MODULES = [str(file) for top in ("src", "tests", "gallery") for file in (ROOT / top).rglob("*.py")]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.M | re.S)
+LINK = re.compile(r"\]\(([^)#\s]*)(?:#([^)\s]*))?\)")
+PATH = re.compile(r"(?<![\w./-])(?:src/seatlook|tests|gallery|docs)/[\w./-]*[\w/]")
+MODULE = re.compile(r"(?<![\w./-])[a-z_][\w/]*\.py\b")
+NAME = re.compile(r"\bseatlook\.[a-z_]+(?:\.\w+)*(?![\w.]*\.(?:toml|npz|md))\b")
+
+every_page = pytest.mark.parametrize(
+    "page", sorted(PAGES), ids=lambda page: str(page.relative_to(ROOT))
+)
+
+
+def text_of(page: Path) -> str:
+    return page.read_text(encoding="utf-8")
+
+
+def prose_of(page: Path) -> str:
+    """Return a page without its fenced blocks, in which # is no heading."""
+    return BLOCK.sub("", text_of(page))
+
+
+def anchors_of(page: Path) -> set[str]:
+    """Return the anchors of a page's headings, made as GitHub makes them."""
+    headings = [
+        re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+        for heading in re.findall(r"^#{1,6} (.*)$", prose_of(page), re.M)
+    ]
+    return {
+        f"{heading}-{n}" if (n := headings[:i].count(heading)) else heading
+        for i, heading in enumerate(headings)
+    }
+
+
+def commands_of(page: Path) -> list[str]:
+    """Return the lines of a page's blocks that call seatlook, without comments."""
+    joined = re.sub(r"\\\n\s*", "", text_of(page))
+    blocks = [text for language, text in BLOCK.findall(joined) if language in ("", "bash", "sh")]
+    lines = [*re.findall(r"^ {4}(.*)$", BLOCK.sub("", joined), re.M), *"".join(blocks).splitlines()]
+    stripped = [line.strip().removeprefix(".venv/bin/") for line in lines]
+    return [line for line in stripped if line.startswith("seatlook ")]
+
+
+def spans_of(page: Path) -> list[str]:
+    """Return the pieces of inline code of a page."""
+    return [" ".join(span.split()) for span in re.findall(r"`([^`]+)`", prose_of(page))]
+
+
+def options_of(words: list[str]) -> set[str]:
+    """Return the options of the command that the first words name; KeyError if there is none."""
+    command: App = app[words[0]]
+    if len(words) > 1 and words[1] in command:
+        command = command[words[1]]
+    if command.default_command is None:
+        return {"--help"}
+    arguments = command.assemble_argument_collection()
+    return {"--help", "--quiet", *(name for argument in arguments for name in argument.names)}
+
+
+@every_page
+def test_links_lead_to_files_and_headings(page):
+    for target, anchor in LINK.findall(prose_of(page)):
+        if target.startswith("https:"):
+            continue
+        file = page.parent / target if target else page
+        assert file.exists(), target
+        assert not anchor or anchor in anchors_of(file), f"{target}#{anchor}"
+
+
+@every_page
+def test_files_it_names_exist(page):
+    text = LINK.sub("", text_of(page))
+    for path in PATH.findall(text):
+        assert "NAME" in path or (ROOT / path).exists(), path
+    for module in MODULE.findall(text):
+        assert "NAME" in module or any(file.endswith(f"/{module}") for file in MODULES), module
+
+
+@every_page
+def test_python_names_it_gives_exist(page):
+    names = {name for span in spans_of(page) for name in NAME.findall(span)}
+    for name in sorted(names):
+        pkgutil.resolve_name(name)
+
+
+@every_page
+def test_commands_it_shows_are_accepted(page):
+    for command in commands_of(page):
+        words = [w for w in shlex.split(command, comments=True)[1:] if w != "--quiet"]
+        app.parse_args(words, print_error=False, exit_on_error=False)
+
+
+@every_page
+def test_commands_and_options_in_its_text_exist(page):
+    for span in spans_of(page):
+        if match := re.match(r"seatlook ([a-z].*)", span):
+            words = match[1].split()
+            assert {w for w in words if w.startswith("--")} <= options_of(words), span
+
+
+def test_a_page_of_faults_is_refused(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text(
+        "# One\n\n[a](#two) `seatlook demo --bogus` `seatlook.nothing`\n\n    seatlook dem\n"
+    )
+    for check in (
+        test_links_lead_to_files_and_headings,
+        test_python_names_it_gives_exist,
+        test_commands_it_shows_are_accepted,
+        test_commands_and_options_in_its_text_exist,
+    ):
+        with pytest.raises(Exception, match=r"two|nothing|dem"):
+            check(page)
+
+
+@pytest.mark.render
+def test_the_readmes_example_runs(demo_scene, tmp_path):
+    (example,) = re.findall(r"```python\n(.*?)```", README, re.S)
+    assert len([line for line in example.splitlines() if line]) <= 14
+    shutil.copytree(demo_scene.parent, tmp_path / "out" / "demo")
+    scene = tmp_path / "out" / "demo" / "scene.toml"
+    scene.write_text(scene.read_text().replace("[camera]", "[camera]\nsize = [96, 54]"))
+    done = subprocess.run(
+        [sys.executable, "-c", example], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert re.fullmatch(r"W2 is above 1 on \d+\.\d% of the elements\n", done.stdout)
+    assert (tmp_path / "seat.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_every_make_target_it_names_exists():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    for page in PAGES:
+        for target in re.findall(r"^    make (\w+)|`make (\w+)`", text_of(page), re.M):
+            assert re.search(rf"^{''.join(target)}:", makefile, re.M), target
+
+
+def test_the_page_of_equations_names_a_function_for_each():
+    spans = spans_of(ROOT / "docs" / "equations.md")
+    assert len({span for span in spans if NAME.fullmatch(span)}) >= 8
