@@ -158,3 +158,20 @@ def test_every_make_target_it_names_exists():
 def test_the_page_of_equations_names_a_function_for_each():
     spans = spans_of(ROOT / "docs" / "equations.md")
     assert len({span for span in spans if NAME.fullmatch(span)}) >= 8
+
+
+def test_the_index_has_a_line_for_every_room():
+    text = text_of(ROOT / "docs" / "index.md")
+    rooms = {
+        path.stem
+        for path in (ROOT / "src" / "seatlook").iterdir()
+        if not path.name.startswith("_")
+        and (path.suffix == ".py" or (path / "__init__.py").exists())
+    }
+    assert set(re.findall(r"^\| `(\w+)` \|", text, re.M)) == rooms
+
+
+def test_every_page_is_reached_from_the_index():
+    index = ROOT / "docs" / "index.md"
+    linked = {(index.parent / target).resolve() for target, _ in LINK.findall(text_of(index))}
+    assert {page for page in PAGES if index.parent in page.parents and page != index} <= linked
