@@ -168,7 +168,7 @@ def test_strip_over_a_cylinder_presses_as_a_belt_does():
     )
     s = solve(c, strict=True)
     process = Process(c, dt=0.02, iterations=1)
-    process.resume(s)
+    process.resume(s, time=s.history["time"][-1])
     process.begin(rest=True)
     process.record()
     contact = process.foundation.contact

@@ -102,7 +102,8 @@ def solve(
     plan = schedule(cover.stages, dt)
     ahead = plan if start is None else _after(plan, start, cover)
     if start is not None:
-        process.resume(start)
+        done = len(plan) - len(ahead)
+        process.resume(start, time=plan[done - 1].time if done else 0.0)
     run = _Run(process, plan, clock, progress)
     for i, step in enumerate(ahead):
         first = i == 0 or ahead[i - 1].stage != step.stage

@@ -122,9 +122,12 @@ class Process:
         self._sheet_force = np.zeros_like(self.state)
         self._work, self._start = np.zeros_like(self.state), np.zeros_like(self.x)
 
-    def resume(self, start: Solution) -> None:
-        """Take over the state of an earlier solution, or the shape of one on another mesh."""
-        self._fresh = False
+    def resume(self, start: Solution, *, time: float) -> None:
+        """Take over the state of an earlier solution, or the shape of one on another mesh.
+
+        ``time`` [s]: when the stage of ``start`` ended, that of all records until the next step.
+        """
+        self._fresh, self.time = False, time
         if not np.array_equal(start.cover.faces, self.cover.faces):
             np.copyto(self.x, transfer(start.cover, start.positions, self.cover))
             return
