@@ -1,4 +1,4 @@
-"""Plan and fit a panel from the command line: votes in, strengths with half-widths out."""
+"""Plan and fit a jury from the command line: votes in, strengths with half-widths out."""
 
 from __future__ import annotations
 
@@ -11,22 +11,25 @@ import pytest
 
 from seatlook.cli import run
 from seatlook.jury.bradley_terry import STEP
-from seatlook.jury.questionnaire import panel_document
+from seatlook.jury.questionnaire import questionnaire_document
 from seatlook.visibility.cross_check import Measures
-from support.seen.juries import ballots, documents, make_panel
+from support.seen.juries import ballots, documents, make_questionnaire
 
 STRENGTHS = STEP * np.arange(8)
 
 
 @pytest.fixture
-def panel():
-    return make_panel(8, 2)
+def questionnaire():
+    return make_questionnaire(8, 2)
 
 
 @pytest.fixture
-def folder(panel, tmp_path: Path) -> Path:
+def folder(questionnaire, tmp_path: Path) -> Path:
     """Five judges who agree and one who flips coins, with the organiser's key."""
-    names = [*panel.names, *(s.name for c in panel.catches for s in (c.wrinkled, c.smooth))]
+    names = [
+        *questionnaire.names,
+        *(s.name for c in questionnaire.catches for s in (c.wrinkled, c.smooth)),
+    ]
     key = {
         name: {
             "label": f"cover {name}",
@@ -35,9 +38,9 @@ def folder(panel, tmp_path: Path) -> Path:
         }
         for k, name in enumerate(names)
     }
-    document = {**panel_document(panel, judges=6, seed=1), "key": key}
-    (tmp_path / "panel.json").write_text(json.dumps(document))
-    given = ballots(panel, [STRENGTHS] * 5 + [None], seed=3)
+    document = {**questionnaire_document(questionnaire, judges=6, seed=1), "key": key}
+    (tmp_path / "jury.json").write_text(json.dumps(document))
+    given = ballots(questionnaire, [STRENGTHS] * 5 + [None], seed=3)
     for judge, votes in documents(given).items():
         (tmp_path / f"votes-{judge}.json").write_text(json.dumps(votes))
     return tmp_path
@@ -45,7 +48,7 @@ def folder(panel, tmp_path: Path) -> Path:
 
 def fit(folder: Path, *words: str) -> int:
     votes = sorted(map(str, folder.glob("votes-*.json")))
-    return run(["panel", "fit", str(folder / "panel.json"), *votes, *words])
+    return run(["jury", "fit", str(folder / "jury.json"), *votes, *words])
 
 
 def test_a_fit_ranks_by_label_with_and_without_the_coin(folder, capsys):
@@ -82,13 +85,13 @@ def test_a_file_that_is_none_is_named_and_the_others_count(folder, capsys):
 
 def test_without_a_vote_nothing_is_fitted(folder, capsys):
     for path in folder.glob("votes-*.json"):
-        path.write_text(path.read_text().replace('"panel": "', '"panel": "x'))
+        path.write_text(path.read_text().replace('"questionnaire": "', '"questionnaire": "x'))
     assert fit(folder) == 2
     assert "votes: got none that counts, expected at least one" in capsys.readouterr().err
 
 
 def test_one_cover_is_too_few_to_calibrate(folder, capsys):
-    path = folder / "panel.json"
+    path = folder / "jury.json"
     path.write_text(path.read_text().replace('"geometry": "b"', '"geometry": "a"'))
     assert fit(folder) == 0
     assert "not calibrated: geometries: got 1, expected two or more" in capsys.readouterr().err
@@ -97,28 +100,28 @@ def test_one_cover_is_too_few_to_calibrate(folder, capsys):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("{", "panel.json:1: file: got Expecting property name"),
-        ("[]", 'panel.json: key: got none, expected the "panel.json"'),
+        ("{", "jury.json:1: file: got Expecting property name"),
+        ("[]", 'jury.json: key: got none, expected the "jury.json"'),
     ],
 )
 def test_a_key_that_is_none_is_refused(folder, capsys, content, message):
-    (folder / "panel.json").write_text(content)
+    (folder / "jury.json").write_text(content)
     assert fit(folder) == 2
     assert message in capsys.readouterr().err
 
 
 def test_a_plan_has_a_row_for_every_size(capsys):
-    words = ["panel", "plan", "--judges", "5", "--judges", "20", "--stimuli", "9", "--json"]
+    words = ["jury", "plan", "--judges", "5", "--judges", "20", "--stimuli", "9", "--json"]
     assert run(words) == 0
     rows = json.loads(capsys.readouterr().out)
     assert [(r["judges"], r["stimuli"]) for r in rows] == [(5, 9), (20, 9)]
     assert rows[1]["half_width"] == pytest.approx(rows[0]["half_width"] / 2, rel=0.01)
 
 
-def test_a_changed_panel_is_refused(panel, folder, capsys):
-    other = replace(panel, title="another")
-    path = folder / "panel.json"
+def test_a_changed_questionnaire_is_refused(questionnaire, folder, capsys):
+    other = replace(questionnaire, title="another")
+    path = folder / "jury.json"
     document = json.loads(path.read_text())
     path.write_text(json.dumps({**document, "title": other.title}))
     assert fit(folder) == 2
-    assert "panel.digest: got" in capsys.readouterr().err
+    assert "questionnaire.digest: got" in capsys.readouterr().err

@@ -8,16 +8,16 @@ import pytest
 from seatlook.errors import InputError
 from seatlook.jury.calibration import CHANCE, Link, calibrate
 from seatlook.visibility.cross_check import Measures
-from support.seen.juries import ballots, make_panel
+from support.seen.juries import ballots, make_questionnaire
 
 COUNT = 9
 
 
 @pytest.fixture(scope="module")
-def panel():
-    panel = make_panel(COUNT, 0)
-    covers = [replace(s, geometry=f"cover {k % 3}") for k, s in enumerate(panel.stimuli)]
-    return replace(panel, stimuli=tuple(covers))
+def questionnaire():
+    questionnaire = make_questionnaire(COUNT, 0)
+    covers = [replace(s, geometry=f"cover {k % 3}") for k, s in enumerate(questionnaire.stimuli)]
+    return replace(questionnaire, stimuli=tuple(covers))
 
 
 def visible(seed=0):
@@ -25,29 +25,31 @@ def visible(seed=0):
     return np.sort(rng.uniform(0.5, 40, COUNT)), rng.uniform(0.01, 0.2, COUNT)
 
 
-def measured(panel, vwi, other):
+def measured(questionnaire, vwi, other):
     return {
         s.name: Measures(vwi=vwi[k], log_ratio=other[k], dissimilarity=float(other[k] / 3))
-        for k, s in enumerate(panel.stimuli)
+        for k, s in enumerate(questionnaire.stimuli)
     }
 
 
-def people(panel, truth, judges=25, seed=0):
-    return ballots(panel, [truth] * judges, seed=seed)
+def people(questionnaire, truth, judges=25, seed=0):
+    return ballots(questionnaire, [truth] * judges, seed=seed)
 
 
-def test_gain_and_exponent_come_back(panel):
+def test_gain_and_exponent_come_back(questionnaire):
     vwi, other = visible()
-    found = calibrate(people(panel, 1.5 * vwi**0.5, 120), measured(panel, vwi, other))
+    found = calibrate(
+        people(questionnaire, 1.5 * vwi**0.5, 120), measured(questionnaire, vwi, other)
+    )
     link = found.links["vwi"]
     assert link.exponent == pytest.approx(0.5, abs=0.08)
     lead = link.gain * (vwi[-1] ** link.exponent - vwi[0] ** link.exponent)
     assert lead == pytest.approx(1.5 * (vwi[-1] ** 0.5 - vwi[0] ** 0.5), rel=0.08)
 
 
-def test_the_score_people_follow_wins(panel):
+def test_the_score_people_follow_wins(questionnaire):
     vwi, other = visible()
-    found = calibrate(people(panel, 1.5 * vwi**0.5), measured(panel, vwi, other))
+    found = calibrate(people(questionnaire, 1.5 * vwi**0.5), measured(questionnaire, vwi, other))
     assert found.held_out["vwi"] > max(found.held_out["log_ratio"], CHANCE)
     assert found.advantage[1] > 0
     assert found.verdict == "VWI predicts better than the log ratio"
@@ -56,22 +58,22 @@ def test_the_score_people_follow_wins(panel):
     assert found.votes == 25 * (9 + 2 * 27)
 
 
-def test_a_failure_is_told(panel):
+def test_a_failure_is_told(questionnaire):
     vwi, other = visible()
     truth = 20 * other
-    found = calibrate(people(panel, truth), measured(panel, vwi, other))
+    found = calibrate(people(questionnaire, truth), measured(questionnaire, vwi, other))
     assert found.verdict != "VWI predicts better than the log ratio"
     assert found.advantage[2] < 0
-    found = calibrate(people(panel, -0.2 * vwi), measured(panel, vwi, other))
+    found = calibrate(people(questionnaire, -0.2 * vwi), measured(questionnaire, vwi, other))
     assert found.verdict == "VWI predicts no better than a coin"
 
 
-def test_the_held_out_figure_by_hand(panel):
+def test_the_held_out_figure_by_hand(questionnaire):
     """Votes that follow the truth exactly: its own likelihood is the best one can expect."""
     vwi, other = visible()
     truth = 1.5 * vwi**0.5
-    given = people(panel, truth, 200)
-    found = calibrate(given, measured(panel, vwi, other))
+    given = people(questionnaire, truth, 200)
+    found = calibrate(given, measured(questionnaire, vwi, other))
     p = 1 / (1 + np.exp(truth[None, :] - truth[:, None]))
     cover = np.arange(COUNT) % 3
     weight = np.where(cover[:, None] == cover[None, :], 1, 2) * ~np.eye(COUNT, dtype=bool)
@@ -80,10 +82,12 @@ def test_the_held_out_figure_by_hand(panel):
     assert found.held_out["vwi"] == pytest.approx(best, abs=0.01)
 
 
-def test_preference_expects_the_smoother_one(panel):
+def test_preference_expects_the_smoother_one(questionnaire):
     vwi, other = visible()
     found = calibrate(
-        people(panel, -1.5 * vwi**0.5), measured(panel, vwi, other), question="preference"
+        people(questionnaire, -1.5 * vwi**0.5),
+        measured(questionnaire, vwi, other),
+        question="preference",
     )
     assert found.held_out["vwi"] > CHANCE
 
@@ -95,20 +99,22 @@ def test_link_at_its_ends():
     assert near == CHANCE
 
 
-def test_refuses_what_it_cannot_fit(panel):
+def test_refuses_what_it_cannot_fit(questionnaire):
     vwi, other = visible()
-    measures = measured(panel, vwi, other)
+    measures = measured(questionnaire, vwi, other)
     missing = {k: v for k, v in measures.items() if k != "s3"}
     with pytest.raises(InputError, match="stimulus s3: got no measures"):
-        calibrate(people(panel, vwi, 1), missing)
-    bare = make_panel(COUNT, 0)
+        calibrate(people(questionnaire, vwi, 1), missing)
+    bare = make_questionnaire(COUNT, 0)
     with pytest.raises(InputError, match="stimulus s0: got no geometry, expected the cover"):
         calibrate(people(bare, vwi, 1), measures)
-    one = replace(panel, stimuli=tuple(replace(s, geometry="x") for s in panel.stimuli))
+    one = replace(
+        questionnaire, stimuli=tuple(replace(s, geometry="x") for s in questionnaire.stimuli)
+    )
     with pytest.raises(InputError, match="geometries: got 1, expected two or more covers"):
         calibrate(people(one, vwi, 1), measures)
-    empty = replace(people(panel, vwi, 1), votes=())
+    empty = replace(people(questionnaire, vwi, 1), votes=())
     with pytest.raises(InputError, match="votes: got none on 'wrinkles'"):
         calibrate(empty, measures)
     with pytest.raises(InputError, match="measures: got 0 for every stimulus"):
-        calibrate(people(panel, vwi, 2), measured(panel, 0 * vwi, other))
+        calibrate(people(questionnaire, vwi, 2), measured(questionnaire, 0 * vwi, other))

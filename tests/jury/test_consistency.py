@@ -77,7 +77,7 @@ def test_agreement_at_its_ends():
 
 
 def test_coins_agree_by_chance():
-    """p is about uniform: the share below 0.05 of 400 panels of coins."""
+    """p is about uniform: the share below 0.05 of 400 juries of coins."""
     rng = np.random.default_rng(4)
     p = [agreement(np.array([coin(6, rng) for _ in range(8)])).p_value for _ in range(400)]
     assert 0.02 < np.mean(np.array(p) < 0.05) < 0.09

@@ -1,4 +1,4 @@
-"""The panel page in headless Chromium, from file://, offline: by keyboard alone, and reloaded."""
+"""The jury page in headless Chromium, from file://, offline: by keyboard alone, and reloaded."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from seatlook.jury.questionnaire import Catch, Panel, Stimulus, trials
+from seatlook.jury.questionnaire import Catch, Questionnaire, Stimulus, trials
 from seatlook.jury.votes import merge_votes
-from seatlook.report.jury_page import write_panel_page
+from seatlook.report.jury_page import write_jury_page
 from support.browsers import all_images_decode
 from support.pages import SIZE, picture, write_png
 
@@ -23,8 +23,8 @@ def stimulus(name: str) -> Stimulus:
     return Stimulus(name=name, picture=f"images/{name}.png")
 
 
-def make(folder: Path, **options: Any) -> tuple[Panel, str]:
-    panel = Panel(
+def make(folder: Path, **options: Any) -> tuple[Questionnaire, str]:
+    questionnaire = Questionnaire(
         title="Seat covers <b>",
         stimuli=tuple(stimulus(f"c{k}") for k in range(4)),
         catches=(Catch(wrinkled=stimulus("deep"), smooth=stimulus("flat")),),
@@ -33,13 +33,13 @@ def make(folder: Path, **options: Any) -> tuple[Panel, str]:
     )
     for k, name in enumerate(("c0", "c1", "c2", "c3", "deep", "flat")):
         write_png(folder / f"images/{name}.png", picture(k))
-    page = write_panel_page(panel, folder, judges=3, seed=SEED, size=SIZE)
-    return panel, page.as_uri()
+    page = write_jury_page(questionnaire, folder, judges=3, seed=SEED, size=SIZE)
+    return questionnaire, page.as_uri()
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Panel, str]:
-    return make(tmp_path_factory.mktemp("panel"))
+def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Questionnaire, str]:
+    return make(tmp_path_factory.mktemp("jury"))
 
 
 @pytest.fixture
@@ -89,8 +89,8 @@ def saved(page: Any, folder: Path) -> dict[str, Any]:
 
 
 def test_a_whole_session_by_keyboard_alone_comes_back_as_votes(page, made, tmp_path):
-    panel, _ = made
-    wanted = trials(panel, SEED + 1)
+    questionnaire, _ = made
+    wanted = trials(questionnaire, SEED + 1)
     begin(page, "Anna Ü.", 2)
     for trial in wanted:
         answer(page, "ArrowLeft" if trial.left < trial.right else "ArrowRight")
@@ -98,7 +98,7 @@ def test_a_whole_session_by_keyboard_alone_comes_back_as_votes(page, made, tmp_p
     assert page.evaluate("document.activeElement.id") == "save"
     document = saved(page, tmp_path)
     (path,) = tmp_path.glob("votes-Anna-*.json")
-    ballots = merge_votes({path: path.read_text(encoding="utf-8")}, panel)
+    ballots = merge_votes({path: path.read_text(encoding="utf-8")}, questionnaire)
     assert ballots.problems == ()
     assert ballots.notices == ()
     assert document["seed"] == SEED + 1
@@ -160,14 +160,14 @@ def test_nothing_tells_which_picture_is_which(page):
     assert alts == ["The left picture", "The right picture"]
 
 
-def test_equal_only_where_the_panel_allows_it(browser, tmp_path):
-    panel, address = make(tmp_path, ties=True)
+def test_equal_only_where_the_questionnaire_allows_it(browser, tmp_path):
+    questionnaire, address = make(tmp_path, ties=True)
     context = browser.new_context(offline=True)
     page = context.new_page()
     page.goto(address)
     begin(page, "Gus", 1)
     answer(page, "ArrowDown")
-    kept = page.evaluate(f"localStorage.getItem('seatlook-panel-{panel.digest}-0')")
+    kept = page.evaluate(f"localStorage.getItem('seatlook-jury-{questionnaire.digest}-0')")
     context.close()
     assert [v["choice"] for v in json.loads(kept)["votes"]] == ["tie"]
 

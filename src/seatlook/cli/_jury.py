@@ -1,4 +1,4 @@
-"""Commands that plan a panel of judges, make its page, and fit its votes."""
+"""Commands that plan a jury, make its page, and fit its votes."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from seatlook.cli._run import Names, camera_of, load, narrowed, result_of
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.jury.questionnaire import Catch, Panel
+    from seatlook.jury.questionnaire import Catch, Questionnaire
     from seatlook.jury.stimuli import Shown
 
-_HELP = """Ask people: plan a panel, make its page, fit its votes.
+_HELP = """Ask people: plan a jury, make its page, fit its votes.
 
-Example: seatlook panel plan --judges 20 --stimuli 9
+Example: seatlook jury plan --judges 20 --stimuli 9
 """
-panel = App(name="panel", help=_HELP)
+jury = App(name="jury", help=_HELP)
 
 _FEW, _MANY = 8, 12
-_KEY = "panel.json"
+_KEY = "jury.json"
 
 
-@panel.command
+@jury.command
 def plan(
     *,
     judges: Annotated[tuple[int, ...], Parameter(negative=())] = (5, 10, 20, 40),
@@ -36,11 +36,11 @@ def plan(
     spacing: float = 0.36,
     json: Json = False,
 ) -> None:
-    """Say how exact a panel of that size will be, before anybody is asked.
+    """Say how exact a jury of that size will be, before anybody is asked.
 
     Widths are in steps: one step apart, three of four choices go one way.
 
-    Example: seatlook panel plan --judges 20 --stimuli 9
+    Example: seatlook jury plan --judges 20 --stimuli 9
 
     Parameters
     ----------
@@ -51,13 +51,13 @@ def plan(
     spacing
         Expected distance of neighbours in steps; 0.36 are designs hard to tell apart.
     """
-    from seatlook.jury.plan import plan_panel
+    from seatlook.jury.plan import plan_jury
 
-    rows = [asdict(plan_panel(j, m, spacing=spacing)) for m in stimuli for j in judges]
+    rows = [asdict(plan_jury(j, m, spacing=spacing)) for m in stimuli for j in judges]
     table(tuple(rows[0]), [tuple(row.values()) for row in rows], json=json)
 
 
-@panel.command
+@jury.command
 def export(
     *scenes: Annotated[Path, Parameter(help='Scene files, each with its "result.npz" beside it.')],
     out: Annotated[Path, Parameter(help="Folder to write to.")],
@@ -73,10 +73,10 @@ def export(
 ) -> None:
     """Make the page on which judges compare pictures, two at a time.
 
-    Leaves the folder "page" for the judges, which names nothing, and panel.json, which "seatlook
-    panel fit" needs and which is not for them.
+    Leaves the folder "page" for the judges, which names nothing, and jury.json, which "seatlook
+    jury fit" needs and which is not for them.
 
-    Example: seatlook panel export out/demo/scene.toml --rig sun --out panel
+    Example: seatlook jury export out/demo/scene.toml --rig sun --out jury
 
     Parameters
     ----------
@@ -97,34 +97,39 @@ def export(
     ties
         Allow "equal" as an answer.
     """
-    from seatlook.jury.questionnaire import panel_document, trials
+    from seatlook.jury.questionnaire import questionnaire_document, trials
     from seatlook.pbr import offscreen_backend
-    from seatlook.report.jury_page import write_panel_page
+    from seatlook.report.jury_page import write_jury_page
 
     offscreen_backend()
     cells, catches = _drawn(scenes, texture, rig, view, width_px, seed)
-    made = _panel(cells, catches, title=title, ties=ties)
+    questionnaire = _questionnaire(cells, catches, title=title, ties=ties)
     shown = [*cells, *(s for pair in catches for s in pair)]
     for one in shown:
         one.picture.save(out / "page" / _picture(one))
     height, width = shown[0].picture.radiance.shape[:2]
-    page = write_panel_page(made, out / "page", judges=judges, seed=seed, size=(width, height))
-    document = {**panel_document(made, judges=judges, seed=seed), "key": _key(shown)}
+    page = write_jury_page(
+        questionnaire, out / "page", judges=judges, seed=seed, size=(width, height)
+    )
+    document = {
+        **questionnaire_document(questionnaire, judges=judges, seed=seed),
+        "key": _key(shown),
+    }
     _write_key(document, out / _KEY)
     say(f"page for the judges: {page}", f"key, not for them: {out / _KEY}")
     rows = [
         ("stimuli", len(cells)),
         ("catch_pairs", len(catches)),
-        ("comparisons_per_judge", len(trials(made, seed))),
+        ("comparisons_per_judge", len(trials(questionnaire, seed))),
         ("sessions", judges),
-        ("digest", made.digest),
+        ("digest", questionnaire.digest),
     ]
     table(("what", "value"), rows, json=json)
 
 
-@panel.command
+@jury.command
 def fit(
-    key: Annotated[Path, Parameter(help='The "panel.json" of "seatlook panel export".')],
+    key: Annotated[Path, Parameter(help='The "jury.json" of "seatlook jury export".')],
     votes: Annotated[tuple[Path, ...], Parameter(help="Files that the judges saved.")],
     /,
     *,
@@ -137,27 +142,27 @@ def fit(
     doubled votes are named on stderr and do not count. With two covers or more the scores are
     calibrated on the votes.
 
-    Example: seatlook panel fit panel/panel.json votes-*.json
+    Example: seatlook jury fit jury/jury.json votes-*.json
 
     Parameters
     ----------
     seed
         Of the judges drawn again for the intervals.
     """
-    from seatlook.jury.fit import fit_panel
-    from seatlook.jury.questionnaire import read_panel
+    from seatlook.jury.fit import fit_votes
+    from seatlook.jury.questionnaire import read_questionnaire
     from seatlook.jury.votes import merge_votes
     from seatlook.report.sections.jury_tables import calibration_rows, fit_tables, fit_values
 
     document = _read_key(key)
-    made = read_panel(document)
-    ballots = merge_votes({path: _text(path) for path in votes}, made)
+    questionnaire = read_questionnaire(document)
+    ballots = merge_votes({path: _text(path) for path in votes}, questionnaire)
     for problem in ballots.problems:
         say(str(problem))
-    asked = [q for q in made.questions if any(v.question == q for v in ballots.votes)]
-    if not asked:
+    questions = [q for q in questionnaire.questions if any(v.question == q for v in ballots.votes)]
+    if not questions:
         raise InputError.single("votes", got="none that counts", expected="at least one")
-    results = {question: fit_panel(ballots, question, seed=seed) for question in asked}
+    results = {question: fit_votes(ballots, question, seed=seed) for question in questions}
     labels = {code: entry["label"] for code, entry in document["key"].items()}
     calibrated, why_not = calibration_rows(ballots, document["key"])
     if json:
@@ -197,28 +202,28 @@ def _drawn(
         for path, folder in zip(scenes, names, strict=True):
             scene = narrowed(load(path), textures, rigs)
             solution = result_of(scene, path.with_name("result.npz"))
-            seen = stimuli.panel_view(solution, camera_of(scene, view), width=width)
+            jury_view = stimuli.jury_view(solution, camera_of(scene, view), width=width)
             name = f"{scene.name} ({folder})" if folder else scene.name
             show("draw", scene=name)
-            cells += stimuli.shown_cells(scene, seen, name=name, seed=seed)
+            cells += stimuli.shown_cells(scene, jury_view, name=name, seed=seed)
             if not catches:
                 show("draw", scene=name, what="catch pairs")
-                found = [
-                    stimuli.catch_pair(seen, black, lights, seed=seed)
-                    for lights in stimuli.catch_rigs(scene, seen.camera)
+                pairs = [
+                    stimuli.catch_pair(jury_view, black, lights, seed=seed)
+                    for lights in stimuli.catch_rigs(scene, jury_view.camera)
                 ]
-                catches = [pair for pair in found if pair is not None]
+                catches = [pair for pair in pairs if pair is not None]
     if not catches:
         say("no catch pair: raised by 32 mm these wrinkles would still be missed; judges cannot be")
         say("screened")
     return cells, catches
 
 
-def _panel(
+def _questionnaire(
     cells: list[Shown], catches: list[tuple[Shown, Shown]], *, title: str, ties: bool
-) -> Panel:
-    """Make the panel; say so if it is too long or too short to screen judges."""
-    from seatlook.jury.questionnaire import Catch, Panel, Stimulus
+) -> Questionnaire:
+    """Make the questionnaire; say so if it is too long or too short to screen judges."""
+    from seatlook.jury.questionnaire import Catch, Questionnaire, Stimulus
 
     if not _FEW <= len(cells) <= _MANY:
         say(f"{len(cells)} pictures; {_FEW} to {_MANY} screen judges without tiring them")
@@ -230,13 +235,13 @@ def _panel(
     pairs: tuple[Catch, ...] = tuple(
         Catch(wrinkled=stimulus(wrinkled), smooth=stimulus(smooth)) for wrinkled, smooth in catches
     )
-    return Panel(
+    return Questionnaire(
         title=title, stimuli=tuple(stimulus(one) for one in cells), catches=pairs, ties=ties
     )
 
 
 def _key(shown: list[Shown]) -> dict[str, dict[str, Any]]:
-    """What the judges are not told, by code."""
+    """What the judges do not see, by code."""
     return {
         one.code: {
             "label": one.label,
@@ -260,7 +265,7 @@ def _write_key(document: dict[str, Any], path: Path) -> None:
 
 
 def _read_key(path: Path) -> dict[str, Any]:
-    """Read panel.json; its labels must be there."""
+    """Read jury.json; its labels must be there."""
     try:
         document = json_module.loads(_text(path))
     except json_module.JSONDecodeError as error:
@@ -269,7 +274,7 @@ def _read_key(path: Path) -> dict[str, Any]:
         ) from error
     if not isinstance(document, dict) or not isinstance(document.get("key"), dict):
         raise InputError.single(
-            "key", got="none", expected='the "panel.json" of "seatlook panel export"', file=path
+            "key", got="none", expected='the "jury.json" of "seatlook jury export"', file=path
         )
     return document
 

@@ -5,7 +5,7 @@ With ``a = (theta_i - theta_j) / 2`` and ``Z = e^a + e^-a + nu`` a pair gives i 
 divided by ``ln 3`` they count steps at which three of four decided choices go one way.
 
 A ridge ``penalty / 2 * (sum theta^2 + ln(nu)^2)`` keeps strengths finite where an item always wins.
-It is weak, so there the value means nothing: :func:`groups` tells where.
+It is weak, so there the value means nothing: :func:`groups` shows where.
 """
 
 from __future__ import annotations
@@ -188,7 +188,7 @@ def _newton(problem: _Problem, x: FloatArray) -> tuple[FloatArray, FloatArray]:
                 break
             step[worse] /= 2
         x, value = x + step, trial
-    raise SolverError(f"strengths did not settle in {_MOST_ITERATIONS} Newton steps")
+    raise SolverError(f"strengths did not converge in {_MOST_ITERATIONS} Newton steps")
 
 
 def _check(wins: FloatArray, ties: FloatArray, penalty: float) -> None:

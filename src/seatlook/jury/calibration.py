@@ -1,4 +1,4 @@
-"""Does a score predict what people choose: fitted on some covers, judged on the one left out."""
+"""Does a score predict what people choose: fitted to some covers, tested on the one left out."""
 
 from __future__ import annotations
 
@@ -95,16 +95,16 @@ def calibrate(
     geometries = tuple(sorted(set(data.geometry.ravel())))
     if len(geometries) < 2:
         raise InputError.single("geometries", got=len(geometries), expected="two or more covers")
-    links, predicted = {}, {}
+    links, likelihood = {}, {}
     for name in MEASURES:
         better, worse = data.values[name]
         links[name] = _fit(better, worse)
-        predicted[name] = _left_out(better, worse, data.geometry, geometries)
+        likelihood[name] = _left_out(better, worse, data.geometry, geometries)
     judge = np.concatenate([data.judge[(data.geometry == g).any(axis=1)] for g in geometries])
-    gain = predicted["vwi"] - predicted["log_ratio"]
+    gain = likelihood["vwi"] - likelihood["log_ratio"]
     return Calibration(
         links=MappingProxyType(links),
-        held_out=MappingProxyType({name: float(p.mean()) for name, p in predicted.items()}),
+        held_out=MappingProxyType({name: float(p.mean()) for name, p in likelihood.items()}),
         advantage=(float(gain.mean()), *_interval(gain, judge, seed)),
         geometries=geometries,
         votes=len(gain),
@@ -121,7 +121,7 @@ class _Choices:
 
 
 def _choices(ballots: Ballots, measures: Mapping[str, Measures], question: str) -> _Choices:
-    stimuli = {s.name: s for s in ballots.panel.stimuli}
+    stimuli = {s.name: s for s in ballots.questionnaire.stimuli}
     problems = [
         Problem(key=f"stimulus {name}", got="no measures", expected="VWI and its cross-checks")
         for name in stimuli
@@ -142,7 +142,7 @@ def _choices(ballots: Ballots, measures: Mapping[str, Measures], question: str) 
     if problems:
         raise InputError(problems)
     pairs = [(v.chosen or "", v.right if v.chosen == v.left else v.left) for v in votes]
-    # Who asks which one people would rather have expects the less visible wrinkles to win.
+    # Asked for a preference, people are expected to choose the less visible wrinkles.
     pairs = pairs if question == WRINKLES else [pair[::-1] for pair in pairs]
     values = {}
     for name in MEASURES:
@@ -168,10 +168,8 @@ def _fit(better: FloatArray, worse: FloatArray) -> Link:
 
     # Bounds keep a separable set of votes finite: gain e^6, exponents 0.05 to 4.
     bounds = [(-7.0, 6.0), (np.log(0.05), np.log(4.0))]
-    found = [
-        minimize(loss, [0.0, start], method="L-BFGS-B", bounds=bounds) for start in (-1.0, 0.0)
-    ]
-    best = min(found, key=lambda result: result.fun)
+    fits = [minimize(loss, [0.0, start], method="L-BFGS-B", bounds=bounds) for start in (-1.0, 0.0)]
+    best = min(fits, key=lambda result: result.fun)
     exponent = float(np.exp(best.x[1]))
     return Link(gain=float(np.exp(best.x[0])) / scale**exponent, exponent=exponent)
 
@@ -180,7 +178,7 @@ def _left_out(
     better: FloatArray, worse: FloatArray, geometry: np.ndarray, geometries: tuple[str, ...]
 ) -> FloatArray:
     """Log-likelihood of every vote that shows a cover, by the link fitted without that cover."""
-    predicted = []
+    likelihood = []
     for left_out in geometries:
         shown = (geometry == left_out).any(axis=1)
         if shown.all():
@@ -188,8 +186,8 @@ def _left_out(
                 "votes", got=f"none without {left_out!r}", expected="pairs of other covers"
             )
         link = _fit(better[~shown], worse[~shown])
-        predicted.append(link.log_likelihood(better[shown], worse[shown]))
-    return np.concatenate(predicted)
+        likelihood.append(link.log_likelihood(better[shown], worse[shown]))
+    return np.concatenate(likelihood)
 
 
 def _interval(gain: FloatArray, judge: np.ndarray, seed: int) -> tuple[float, float]:

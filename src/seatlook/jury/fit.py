@@ -1,4 +1,4 @@
-"""From the votes of a panel to strengths with intervals, with all judges and with the screened."""
+"""From the votes of a jury to strengths with intervals, with all judges and with the screened."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class _Estimator:
         tail = (1 + LEVEL) / 2
         half_width = None
         if self.by_judge is not None:
-            # Student's t, since few judges tell their own spread badly.
+            # Student's t: the spread of a few judges is itself uncertain.
             half_width = float(t.ppf(tail, self.judges - 1) * np.sqrt(c @ self.by_judge @ c))
         return Estimate(
             value=float(c @ self.theta),
@@ -114,7 +114,7 @@ class Fit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PanelResult:
+class JuryResult:
     """One question answered: with all judges, and without those the rule leaves out.
 
     Parameters
@@ -131,14 +131,14 @@ class PanelResult:
     notices: tuple[str, ...]
 
 
-def fit_panel(
+def fit_votes(
     ballots: Ballots,
     question: str,
     *,
     rule: Rule = RULE,
     resamples: int = RESAMPLES,
     seed: int = 0,
-) -> PanelResult:
+) -> JuryResult:
     """Fit strengths to the votes on one question.
 
     Parameters
@@ -155,28 +155,28 @@ def fit_panel(
     records = judge_records(ballots, question, rule=rule)
     if not records:
         raise InputError.single("votes", got=f"none on {question!r}", expected="at least one")
-    names = ballots.panel.names
-    asked = [v for v in ballots.votes if v.question == question]
+    names = ballots.questionnaire.names
+    answers = [v for v in ballots.votes if v.question == question]
     everyone = tuple(r.judge for r in records)
-    kept = tuple(r.judge for r in records if not r.excluded)
+    remaining = tuple(r.judge for r in records if not r.excluded)
     notices = list(ballots.notices)
     screened = None
     if not any(r.catches for r in records):
         notices.append("no catch pair was answered: no judge can be left out")
-    elif kept != everyone:
-        wins, ties = tables(asked, names, kept)
-        if kept and len(components((wins + ties).sum(axis=0))) == 1:
-            screened = _fit(wins, ties, names, kept, resamples, seed)
+    elif remaining != everyone:
+        wins, ties = tables(answers, names, remaining)
+        if remaining and len(components((wins + ties).sum(axis=0))) == 1:
+            screened = _fit(wins, ties, names, remaining, resamples, seed)
         else:
-            notices.append("without the judges left out the comparisons no longer hang together")
-    wins, ties = tables(asked, names, everyone)
-    decided = [v for v in asked if v.chosen is not None and v.kind != "catch"]
+            notices.append("without the judges left out the comparisons are no longer linked")
+    wins, ties = tables(answers, names, everyone)
+    decided = [v for v in answers if v.chosen is not None and v.kind != "catch"]
     left = float(np.mean([v.chosen == v.left for v in decided])) if decided else 0.5
     spread = float(norm.ppf((1 + LEVEL) / 2) * np.sqrt(0.25 / max(len(decided), 1)))
     result = _fit(wins, ties, names, everyone, resamples, seed)
     if len(result.groups) > 1:
         notices.append(_unbounded(result))
-    return PanelResult(
+    return JuryResult(
         question=question,
         records=records,
         everyone=result,
@@ -229,7 +229,7 @@ def _judge_covariance(
 ) -> FloatArray | None:
     """Covariance (n, n) of the strengths over resampled judges; None with fewer than two.
 
-    Judges and not votes are drawn, because the votes of one judge hang together.
+    Judges are drawn and not votes, because the votes of one judge are correlated.
     """
     judges = len(wins)
     if judges < 2:
@@ -237,11 +237,11 @@ def _judge_covariance(
     drawn = np.random.default_rng(seed).multinomial(
         judges, np.full(judges, 1 / judges), size=resamples
     )
-    again = fit_strengths(
+    repeated = fit_strengths(
         np.tensordot(drawn, wins, axes=1), np.tensordot(drawn, ties, axes=1), start=theta
     )
     # A sample of m drawn from m varies less than judges do, by (m - 1) / m.
-    return np.asarray(np.cov(again.theta.T) * judges / (judges - 1))
+    return np.asarray(np.cov(repeated.theta.T) * judges / (judges - 1))
 
 
 def _check_linked(compared: FloatArray, names: tuple[str, ...]) -> None:
@@ -257,4 +257,4 @@ def _check_linked(compared: FloatArray, names: tuple[str, ...]) -> None:
 
 def _unbounded(fit: Fit) -> str:
     listed = " > ".join("{" + ", ".join(part) + "}" for part in fit.groups)
-    return f"no vote went against {listed}: how far these sets lie apart, the votes do not say"
+    return f"no vote went against {listed}: the votes do not show how far apart these sets are"

@@ -1,4 +1,4 @@
-"""What the votes say about the judges, and who is left out of the second fit."""
+"""What the votes show about the judges, and who is left out of the second fit."""
 
 from __future__ import annotations
 
@@ -61,10 +61,10 @@ def judge_records(ballots: Ballots, question: str, *, rule: Rule = RULE) -> tupl
     records = []
     for judge in ballots.judges:
         own = [v for v in ballots.votes if v.judge == judge]
-        asked = [v for v in own if v.question == question]
-        if any(v.kind == "pair" for v in asked):
+        answers = [v for v in own if v.question == question]
+        if any(v.kind == "pair" for v in answers):
             records.append(
-                _record(judge, asked, [v for v in own if v.kind == "catch"], ballots, rule)
+                _record(judge, answers, [v for v in own if v.kind == "catch"], ballots, rule)
             )
     return tuple(records)
 
@@ -91,21 +91,21 @@ def tables(
 
 
 def _record(
-    judge: str, asked: list[Vote], catches: list[Vote], ballots: Ballots, rule: Rule
+    judge: str, answers: list[Vote], catches: list[Vote], ballots: Ballots, rule: Rule
 ) -> JudgeRecord:
-    names = ballots.panel.names
-    wins, ties = tables(asked, names, (judge,))
+    names = ballots.questionnaire.names
+    wins, ties = tables(answers, names, (judge,))
     complete = np.array_equal(wins + wins.transpose(0, 2, 1) + ties, 1 - np.eye(len(names))[None])
     zeta = float(consistence(wins + ties / 2)[0]) if complete else None
-    wrinkled = {c.wrinkled.name for c in ballots.panel.catches}
+    wrinkled = {c.wrinkled.name for c in ballots.questionnaire.catches}
     right = sum(v.chosen in wrinkled for v in catches)
-    repeats = [v for v in asked if v.kind == "repeat"]
-    first = {frozenset((v.left, v.right)): v.chosen for v in asked if v.kind == "pair"}
-    decided = [v for v in asked if v.chosen is not None and v.kind != "catch"]
-    seconds = [v.seconds for v in asked if v.seconds is not None]
+    repeats = [v for v in answers if v.kind == "repeat"]
+    first = {frozenset((v.left, v.right)): v.chosen for v in answers if v.kind == "pair"}
+    decided = [v for v in answers if v.chosen is not None and v.kind != "catch"]
+    seconds = [v.seconds for v in answers if v.seconds is not None]
     return JudgeRecord(
         judge=judge,
-        votes=sum(v.kind == "pair" for v in asked),
+        votes=sum(v.kind == "pair" for v in answers),
         zeta=zeta,
         catches=len(catches),
         catches_right=right,
@@ -118,7 +118,7 @@ def _record(
 
 
 def _reason(catches: int, wrong: int, zeta: float | None, stimuli: int, rule: Rule) -> str:
-    """Catch pairs speak first; zeta only beside them, and only where a coin would show."""
+    """Catch pairs decide first; zeta only beside them, and only where a coin would be seen."""
     if not wrong:
         return ""
     if wrong >= rule.wrong_share * catches:

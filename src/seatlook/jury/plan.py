@@ -1,4 +1,4 @@
-"""How much a panel of a given size can tell, before anybody is asked."""
+"""How much a jury of a given size can tell, before anybody is asked."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Plan:
     Parameters
     ----------
     half_width : [steps]   of the 95 % interval of a difference between neighbours, mean over them
-    right_order : share of neighbours that the panel ranks rightly
+    right_order : share of neighbours that the jury ranks rightly
     separated : share of neighbours whose interval leaves out 0
     trials : comparisons per judge and question, repeats and catch pairs not counted
     minutes : per judge and question, at 6 s a comparison
@@ -39,7 +39,7 @@ class Plan:
     minutes: float
 
 
-def plan_panel(judges: int, stimuli: int, *, spacing: float = SPACING) -> Plan:
+def plan_jury(judges: int, stimuli: int, *, spacing: float = SPACING) -> Plan:
     """Expect half-widths from the Fisher information at equally spaced strengths.
 
     Parameters
@@ -53,7 +53,7 @@ def plan_panel(judges: int, stimuli: int, *, spacing: float = SPACING) -> Plan:
 
     Examples
     --------
-    >>> [round(plan_panel(judges, 9).half_width, 2) for judges in (5, 20, 80)]
+    >>> [round(plan_jury(judges, 9).half_width, 2) for judges in (5, 20, 80)]
     [0.89, 0.45, 0.22]
     """
     for name, value, least in (("judges", judges, 1), ("stimuli", stimuli, 3)):

@@ -1,4 +1,4 @@
-"""A panel of paired comparisons: what is shown to whom, in which order, on which side."""
+"""A questionnaire of paired comparisons: what is shown to whom, in which order, on which side."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ class Trial:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Panel:
-    """What a panel compares; the digest ties votes to it.
+class Questionnaire:
+    """What a jury compares; the digest ties votes to it.
 
     Parameters
     ----------
@@ -77,26 +77,36 @@ class Panel:
         names = Counter(s.name for s in self.stimuli)
         names += Counter(s.name for c in self.catches for s in (c.wrinkled, c.smooth))
         problems = [
-            Problem(key="Panel.stimuli", got=f"{count} named {name!r}", expected="one")
+            Problem(key="Questionnaire.stimuli", got=f"{count} named {name!r}", expected="one")
             for name, count in names.items()
             if count > 1
         ]
         problems += [
-            Problem(key="Panel.questions", got=repr(q), expected=f"one of {', '.join(QUESTIONS)}")
+            Problem(
+                key="Questionnaire.questions",
+                got=repr(q),
+                expected=f"one of {', '.join(QUESTIONS)}",
+            )
             for q in self.questions
             if q not in QUESTIONS
         ]
         if len(self.stimuli) < 3:
             problems.append(
-                Problem(key="Panel.stimuli", got=str(len(self.stimuli)), expected="3 or more")
+                Problem(
+                    key="Questionnaire.stimuli", got=str(len(self.stimuli)), expected="3 or more"
+                )
             )
         if not self.questions or len(set(self.questions)) < len(self.questions):
             problems.append(
-                Problem(key="Panel.questions", got=str(self.questions), expected="each one once")
+                Problem(
+                    key="Questionnaire.questions", got=str(self.questions), expected="each one once"
+                )
             )
         if not 0 <= self.repeat_share <= 1:
             problems.append(
-                Problem(key="Panel.repeat_share", got=str(self.repeat_share), expected="0 to 1")
+                Problem(
+                    key="Questionnaire.repeat_share", got=str(self.repeat_share), expected="0 to 1"
+                )
             )
         if problems:
             raise InputError(problems)
@@ -109,28 +119,33 @@ class Panel:
         return tuple(s.name for s in self.stimuli)
 
 
-def panel_document(panel: Panel, *, judges: int, seed: int) -> dict[str, Any]:
-    """Everything a page needs to run the panel, as plain JSON values.
+def questionnaire_document(
+    questionnaire: Questionnaire, *, judges: int, seed: int
+) -> dict[str, Any]:
+    """Everything a page needs to ask the jury, as plain JSON values.
 
     One session per judge, drawn from ``seed``; a judge takes a session that nobody took before.
     """
     seeds = [seed + k for k in range(judges)]
     sessions = [
-        {"seed": s, "trials": [[t.question, t.kind, t.left, t.right] for t in trials(panel, s)]}
+        {
+            "seed": s,
+            "trials": [[t.question, t.kind, t.left, t.right] for t in trials(questionnaire, s)],
+        }
         for s in seeds
     ]
-    questions = {q: QUESTIONS[q] for q in panel.questions}
+    questions = {q: QUESTIONS[q] for q in questionnaire.questions}
     return {
         "schema": SCHEMA,
-        "digest": panel.digest,
-        **_content(panel),
+        "digest": questionnaire.digest,
+        **_content(questionnaire),
         "questions": questions,
         "sessions": sessions,
     }
 
 
-def read_panel(document: Any) -> Panel:
-    """Return the panel of a :func:`panel_document`.
+def read_questionnaire(document: Any) -> Questionnaire:
+    """Return the questionnaire of a :func:`questionnaire_document`.
 
     Raises
     ------
@@ -138,7 +153,7 @@ def read_panel(document: Any) -> Panel:
         Not such a document, or its digest does not fit its content.
     """
     try:
-        panel = Panel(
+        questionnaire = Questionnaire(
             title=document["title"],
             stimuli=tuple(Stimulus(**s) for s in document["stimuli"]),
             catches=tuple(
@@ -151,14 +166,18 @@ def read_panel(document: Any) -> Panel:
         )
     except (KeyError, TypeError) as error:
         raise InputError.single(
-            "panel", got=f"{type(error).__name__}: {error}", expected="a panel document"
+            "questionnaire",
+            got=f"{type(error).__name__}: {error}",
+            expected="a questionnaire document",
         ) from error
-    if document.get("digest") != panel.digest:
-        raise InputError.single("panel.digest", got=document.get("digest"), expected=panel.digest)
-    return panel
+    if document.get("digest") != questionnaire.digest:
+        raise InputError.single(
+            "questionnaire.digest", got=document.get("digest"), expected=questionnaire.digest
+        )
+    return questionnaire
 
 
-def trials(panel: Panel, seed: int) -> tuple[Trial, ...]:
+def trials(questionnaire: Questionnaire, seed: int) -> tuple[Trial, ...]:
     """Return the session of one judge: order and sides drawn from ``seed``.
 
     Question by question (which comes first depends on the seed) all pairs once; a share of the
@@ -166,23 +185,23 @@ def trials(panel: Panel, seed: int) -> tuple[Trial, ...]:
 
     Examples
     --------
-    >>> panel = Panel(title="t", stimuli=tuple(Stimulus(name=n, picture=n) for n in "abc"))
-    >>> [(t.left, t.right) for t in trials(panel, 1)] == [
-    ...     (t.left, t.right) for t in trials(panel, 1)]
+    >>> stimuli = tuple(Stimulus(name=name, picture=name) for name in "abc")
+    >>> questionnaire = Questionnaire(title="t", stimuli=stimuli)
+    >>> trials(questionnaire, 1) == trials(questionnaire, 1)
     True
     """
     rng = random.Random(seed)
-    questions = _shuffled(panel.questions, rng)
+    questions = _shuffled(questionnaire.questions, rng)
     session: list[tuple[str, Kind, str, str]] = []
     for question in questions:
-        pairs = _shuffled(itertools.combinations(panel.names, 2), rng)
+        pairs = _shuffled(itertools.combinations(questionnaire.names, 2), rng)
         # Half of the pairs are turned, so that no stimulus is bound to a side by its place.
         turned = set(_shuffled(range(len(pairs)), rng)[: len(pairs) // 2])
         sided = [(b, a) if k in turned else (a, b) for k, (a, b) in enumerate(pairs)]
         block: list[tuple[Kind, str, str]] = [("pair", *pair) for pair in sided]
-        _insert_repeats(block, panel.repeat_share, rng)
+        _insert_repeats(block, questionnaire.repeat_share, rng)
         if question == WRINKLES:
-            for catch in panel.catches:
+            for catch in questionnaire.catches:
                 pair = (catch.wrinkled.name, catch.smooth.name)
                 left, right = pair if rng.random() < 0.5 else pair[::-1]
                 block.insert(int(rng.random() * (len(block) + 1)), ("catch", left, right))
@@ -207,17 +226,18 @@ def _shuffled(values: Any, rng: random.Random) -> list[Any]:
     return [value for _, value in sorted(((rng.random(), v) for v in values), key=lambda kv: kv[0])]
 
 
-def _content(panel: Panel) -> dict[str, Any]:
+def _content(questionnaire: Questionnaire) -> dict[str, Any]:
     def plain(s: Stimulus) -> dict[str, str]:
         return {"name": s.name, "picture": s.picture, "geometry": s.geometry}
 
     return {
-        "title": panel.title,
-        "stimuli": [plain(s) for s in panel.stimuli],
+        "title": questionnaire.title,
+        "stimuli": [plain(s) for s in questionnaire.stimuli],
         "catches": [
-            {"wrinkled": plain(c.wrinkled), "smooth": plain(c.smooth)} for c in panel.catches
+            {"wrinkled": plain(c.wrinkled), "smooth": plain(c.smooth)}
+            for c in questionnaire.catches
         ],
-        "questions": list(panel.questions),
-        "repeat_share": panel.repeat_share,
-        "ties": panel.ties,
+        "questions": list(questionnaire.questions),
+        "repeat_share": questionnaire.repeat_share,
+        "ties": questionnaire.ties,
     }

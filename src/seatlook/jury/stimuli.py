@@ -1,4 +1,4 @@
-"""What a panel compares: pictures of covers under code names, and pairs that nobody can mistake."""
+"""What a jury compares: pictures of covers under code names, and pairs that nobody can mistake."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _HIGHEST = 0.032  # [m]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shown:
-    """One picture of a panel, with what the judges are not told.
+    """One picture of a questionnaire, with what the judges do not see.
 
     Parameters
     ----------
-    code : name on the page; says nothing
+    code : name on the page; reveals nothing
     geometry : cover that it shows
     measures : how visible its wrinkles are, for the calibration; None for a catch pair's
     """
@@ -70,19 +70,19 @@ def catch_pair(view: View, black: Appearance, rig: Rig, *, seed: int) -> tuple[S
     while height <= _HIGHEST:
         studio = view.studio_of(amplified(view, height / peak_to_valley(view)))
         wrinkled = studio.render(black, rig=rig, camera=view.camera, quality=view.quality)
-        found = score(
+        result = score(
             luminance(wrinkled),
             luminance(smooth),
             pixels_per_degree=view.camera.pixels_per_degree,
             mask=view.region.mask,
         )
-        if found.vwi >= CATCH_VWI:
+        if result.vwi >= CATCH_VWI:
             return (
                 _catch(f"wrinkles of {1e3 * height:g} mm", wrinkled, rig, seed),
                 _catch("no wrinkles", smooth, rig, seed),
             )
         # Visibility grows about linearly with height.
-        height *= 2 ** max(1, math.ceil(math.log2(CATCH_VWI / max(found.vwi, 1e-3))))
+        height *= 2 ** max(1, math.ceil(math.log2(CATCH_VWI / max(result.vwi, 1e-3))))
     return None
 
 
@@ -91,13 +91,13 @@ def catch_rigs(scene: Scene, camera: Camera) -> tuple[Rig, ...]:
     return (reference_rig(camera), scene.rigs[0])
 
 
-def panel_view(solution: Solution, camera: Camera, *, width: int) -> View:
-    """View for a panel: the camera's picture, cut to ``width`` pixels at the same scale."""
+def jury_view(solution: Solution, camera: Camera, *, width: int) -> View:
+    """View for a jury: the camera's picture, cut to ``width`` pixels at the same scale."""
     return View(solution, replace(camera, size=(min(width, camera.size[0]), camera.size[1])))
 
 
 def code_of(label: str, seed: int) -> str:
-    """Name that tells nothing, the same for the same label and seed.
+    """Name that reveals nothing, the same for the same label and seed.
 
     Examples
     --------

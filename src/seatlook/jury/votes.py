@@ -1,12 +1,13 @@
-"""Votes of a panel: one JSON file per judge, checked and merged, everything odd named.
+"""Votes of a jury: one JSON file per judge, checked and merged, everything odd named.
 
 ::
 
-    {"schema": 1, "panel": "<digest>", "judge": "anna", "seed": 12,
+    {"schema": 1, "questionnaire": "<digest>", "judge": "anna", "seed": 12,
      "votes": [{"trial": 0, "question": "wrinkles", "left": "a", "right": "b",
                 "choice": "left", "seconds": 4.2}]}
 
-``choice`` is "left", "right" or, where the panel allows it, "tie". ``seconds`` may be left out.
+``choice`` is "left", "right" or, where the questionnaire allows it, "tie". ``seconds`` may be
+left out.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from seatlook.errors import Problem, did_you_mean
-from seatlook.jury.questionnaire import SCHEMA, WRINKLES, Kind, Panel, trials
+from seatlook.jury.questionnaire import SCHEMA, WRINKLES, Kind, Questionnaire, trials
 
 _KEYS = {"trial", "question", "left", "right", "choice"}
 
@@ -48,7 +49,7 @@ class Ballots:
     notices : what is odd but harmless: the same vote sent twice, sessions not finished
     """
 
-    panel: Panel
+    questionnaire: Questionnaire
     votes: tuple[Vote, ...]
     problems: tuple[Problem, ...]
     notices: tuple[str, ...]
@@ -59,8 +60,8 @@ class Ballots:
         return tuple(dict.fromkeys(vote.judge for vote in self.votes))
 
 
-def merge_votes(files: Mapping[Path, str], panel: Panel) -> Ballots:
-    """Merge the exported files of a panel's judges.
+def merge_votes(files: Mapping[Path, str], questionnaire: Questionnaire) -> Ballots:
+    """Merge the exported files of the judges.
 
     Parameters
     ----------
@@ -73,10 +74,10 @@ def merge_votes(files: Mapping[Path, str], panel: Panel) -> Ballots:
     """
     problems: list[Problem] = []
     notices: list[str] = []
-    found: dict[tuple[str, int], Vote | None] = {}
+    answers: dict[tuple[str, int], Vote | None] = {}
     seeds: dict[str, int] = {}
     for path, text in files.items():
-        document = _document(text, panel, path, problems)
+        document = _document(text, questionnaire, path, problems)
         if document is None:
             continue
         judge = document["judge"]
@@ -85,43 +86,45 @@ def merge_votes(files: Mapping[Path, str], panel: Panel) -> Ballots:
             expected = f"{seeds[judge]}, as in this judge's earlier file"
             problems.append(Problem(key="seed", got=got, expected=expected, file=path))
             continue
-        _collect(found, document, panel, path, problems, notices)
-    votes = _with_repeats([vote for vote in found.values() if vote is not None], problems)
-    asked = len(trials(panel, 0))
+        _collect(answers, document, questionnaire, path, problems, notices)
+    votes = _with_repeats([vote for vote in answers.values() if vote is not None], problems)
+    whole = len(trials(questionnaire, 0))
     for judge, count in Counter(vote.judge for vote in votes).items():
-        if count < asked:
-            notices.append(f"judge {judge!r} answered {count} of {asked} trials")
-    return Ballots(panel=panel, votes=votes, problems=tuple(problems), notices=tuple(notices))
+        if count < whole:
+            notices.append(f"judge {judge!r} answered {count} of {whole} trials")
+    return Ballots(
+        questionnaire=questionnaire, votes=votes, problems=tuple(problems), notices=tuple(notices)
+    )
 
 
 def _collect(
-    found: dict[tuple[str, int], Vote | None],
+    answers: dict[tuple[str, int], Vote | None],
     document: dict[str, Any],
-    panel: Panel,
+    questionnaire: Questionnaire,
     path: Path,
     problems: list[Problem],
     notices: list[str],
 ) -> None:
-    """Add one file's votes to those found; an answer that is contradicted becomes None."""
-    judge, again = document["judge"], 0
-    for number, vote in _votes(document, panel, path, problems):
+    """Add one file's votes to the answers; one that is contradicted becomes None."""
+    judge, repeated = document["judge"], 0
+    for number, vote in _votes(document, questionnaire, path, problems):
         key = (judge, vote.trial)
-        if key not in found:
-            found[key] = vote
-        elif _same(found[key], vote):
-            again += 1
+        if key not in answers:
+            answers[key] = vote
+        elif _same(answers[key], vote):
+            repeated += 1
         else:
-            found[key] = None
+            answers[key] = None
             got = f"a second answer of judge {judge!r} to trial {vote.trial}"
             expected = "one answer; neither counts"
             place = f"votes[{number}]"
             problems.append(Problem(key=place, got=got, expected=expected, file=path))
-    if again:
-        notices.append(f"{path}: {again} votes of judge {judge!r} sent twice count once")
+    if repeated:
+        notices.append(f"{path}: {repeated} votes of judge {judge!r} sent twice count once")
 
 
 def _document(
-    text: str, panel: Panel, path: Path, problems: list[Problem]
+    text: str, questionnaire: Questionnaire, path: Path, problems: list[Problem]
 ) -> dict[str, Any] | None:
     """Return the file's content if its head is sound."""
     try:
@@ -131,16 +134,16 @@ def _document(
             Problem(key="file", got=error.msg, expected="JSON", file=path, line=error.lineno)
         )
         return None
-    wanted = {"schema": int, "panel": str, "judge": str, "seed": int, "votes": list}
+    types = {"schema": int, "questionnaire": str, "judge": str, "seed": int, "votes": list}
     if not isinstance(document, dict):
         problems.append(_type("file", document, "an object", path))
         return None
     wrong = [
         _type(key, document.get(key), kind.__name__, path)
-        for key, kind in wanted.items()
+        for key, kind in types.items()
         if type(document.get(key)) is not kind
     ]
-    for key, value in (("schema", SCHEMA), ("panel", panel.digest)):
+    for key, value in (("schema", SCHEMA), ("questionnaire", questionnaire.digest)):
         if not wrong and document[key] != value:
             wrong.append(Problem(key=key, got=repr(document[key]), expected=repr(value), file=path))
     if not wrong and not document["judge"].strip():
@@ -150,23 +153,25 @@ def _document(
 
 
 def _votes(
-    document: dict[str, Any], panel: Panel, path: Path, problems: list[Problem]
+    document: dict[str, Any], questionnaire: Questionnaire, path: Path, problems: list[Problem]
 ) -> Iterator[tuple[int, Vote]]:
     """Yield the sound votes of a file with their place in it."""
     for number, entry in enumerate(document["votes"]):
-        wrong = list(_vote_problems(entry, panel, f"votes[{number}]", path))
+        wrong = list(_vote_problems(entry, questionnaire, f"votes[{number}]", path))
         if wrong:
             problems += wrong
             continue
         sides = {"left": entry["left"], "right": entry["right"], "tie": None}
-        caught = any({c.wrinkled.name, c.smooth.name} <= set(sides.values()) for c in panel.catches)
+        is_catch = any(
+            {c.wrinkled.name, c.smooth.name} <= set(sides.values()) for c in questionnaire.catches
+        )
         yield (
             number,
             Vote(
                 judge=document["judge"],
                 trial=entry["trial"],
                 question=entry["question"],
-                kind="catch" if caught else "pair",
+                kind="catch" if is_catch else "pair",
                 left=entry["left"],
                 right=entry["right"],
                 chosen=sides[entry["choice"]],
@@ -175,7 +180,9 @@ def _votes(
         )
 
 
-def _vote_problems(entry: Any, panel: Panel, key: str, path: Path) -> Iterator[Problem]:
+def _vote_problems(
+    entry: Any, questionnaire: Questionnaire, key: str, path: Path
+) -> Iterator[Problem]:
     if not isinstance(entry, dict) or not set(entry) >= _KEYS:
         expected = f"an object with {', '.join(sorted(_KEYS))}"
         got = f"keys {', '.join(sorted(entry))}" if isinstance(entry, dict) else repr(entry)
@@ -186,17 +193,19 @@ def _vote_problems(entry: Any, panel: Panel, key: str, path: Path) -> Iterator[P
     seconds = entry.get("seconds")
     if seconds is not None and not (type(seconds) in (int, float) and 0 <= seconds < 1e6):
         yield _type(f"{key}.seconds", seconds, "seconds from 0 up", path)
-    choices = ("left", "right", "tie") if panel.ties else ("left", "right")
-    for name, allowed in (("question", panel.questions), ("choice", choices)):
+    choices = ("left", "right", "tie") if questionnaire.ties else ("left", "right")
+    for name, allowed in (("question", questionnaire.questions), ("choice", choices)):
         if entry[name] not in allowed:
             yield _type(f"{key}.{name}", entry[name], f"one of {', '.join(allowed)}", path)
-    yield from _pair_problems(entry, panel, key, path)
+    yield from _pair_problems(entry, questionnaire, key, path)
 
 
-def _pair_problems(entry: dict[str, Any], panel: Panel, key: str, path: Path) -> Iterator[Problem]:
+def _pair_problems(
+    entry: dict[str, Any], questionnaire: Questionnaire, key: str, path: Path
+) -> Iterator[Problem]:
     """Both sides must be stimuli that are compared: two ranked ones, or a catch pair."""
-    catches = [{c.wrinkled.name, c.smooth.name} for c in panel.catches]
-    known = [*panel.names, *(name for pair in catches for name in sorted(pair))]
+    catches = [{c.wrinkled.name, c.smooth.name} for c in questionnaire.catches]
+    known = [*questionnaire.names, *(name for pair in catches for name in sorted(pair))]
     unknown = False
     for side in ("left", "right"):
         if entry[side] not in known:
@@ -204,14 +213,14 @@ def _pair_problems(entry: dict[str, Any], panel: Panel, key: str, path: Path) ->
             yield Problem(
                 key=f"{key}.{side}",
                 got=repr(entry[side]),
-                expected="a stimulus of the panel",
+                expected="a stimulus of the questionnaire",
                 file=path,
                 hint=did_you_mean(str(entry[side]), known),
             )
     if unknown:
         return
     pair = {entry["left"], entry["right"]}
-    ranked = len(pair) == 2 and pair <= set(panel.names)
+    ranked = len(pair) == 2 and pair <= set(questionnaire.names)
     if not ranked and not (pair in catches and entry["question"] == WRINKLES):
         yield Problem(
             key=key,
@@ -224,14 +233,14 @@ def _pair_problems(entry: dict[str, Any], panel: Panel, key: str, path: Path) ->
 def _with_repeats(votes: list[Vote], problems: list[Problem]) -> tuple[Vote, ...]:
     """Mark the second showing of a pair; a third, or one with the same sides, does not count."""
     shown: dict[tuple[str, str, frozenset[str]], list[Vote]] = {}
-    kept = []
+    counted = []
     for vote in sorted(votes, key=lambda v: v.trial):
         key = (vote.judge, vote.question, frozenset((vote.left, vote.right)))
         before = shown.setdefault(key, [])
         if not before:
-            kept.append(vote)
+            counted.append(vote)
         elif len(before) == 1 and before[0].left == vote.right and vote.kind == "pair":
-            kept.append(replace(vote, kind="repeat"))
+            counted.append(replace(vote, kind="repeat"))
         else:
             problems.append(
                 Problem(
@@ -242,7 +251,7 @@ def _with_repeats(votes: list[Vote], problems: list[Problem]) -> tuple[Vote, ...
             )
         before.append(vote)
     order = {judge: k for k, judge in enumerate(dict.fromkeys(v.judge for v in votes))}
-    return tuple(sorted(kept, key=lambda v: (order[v.judge], v.trial)))
+    return tuple(sorted(counted, key=lambda v: (order[v.judge], v.trial)))
 
 
 def _same(first: Vote | None, second: Vote) -> bool:

@@ -1,10 +1,10 @@
-"""Simulated panels: judges who choose by given strengths."""
+"""Simulated juries: judges who choose by given strengths."""
 
 from dataclasses import replace
 
 import numpy as np
 
-from seatlook.jury.questionnaire import Catch, Panel, Stimulus, trials
+from seatlook.jury.questionnaire import Catch, Questionnaire, Stimulus, trials
 from seatlook.jury.votes import Ballots, Vote
 
 
@@ -12,8 +12,8 @@ def stimulus(name, geometry=""):
     return Stimulus(name=name, picture=f"images/{name}.png", geometry=geometry)
 
 
-def make_panel(count=9, catches=4, **options):
-    return Panel(
+def make_questionnaire(count=9, catches=4, **options):
+    return Questionnaire(
         title="test",
         stimuli=tuple(stimulus(f"s{k}") for k in range(count)),
         catches=tuple(
@@ -24,13 +24,13 @@ def make_panel(count=9, catches=4, **options):
     )
 
 
-def vote(panel, trial, judge, theta, rng):
+def vote(questionnaire, trial, judge, theta, rng):
     """Answer one trial by Bradley-Terry; catch pairs are always right where theta is given."""
     if trial.kind == "catch":
         right = trial.left if trial.left.startswith("deep") else trial.right
         chosen = right if theta is not None else rng.choice([trial.left, trial.right])
     else:
-        names = panel.names
+        names = questionnaire.names
         lead = 0.0
         if theta is not None:
             lead = theta[names.index(trial.left)] - theta[names.index(trial.right)]
@@ -47,15 +47,15 @@ def vote(panel, trial, judge, theta, rng):
     )
 
 
-def ballots(panel, strengths, seed=0):
+def ballots(questionnaire, strengths, seed=0):
     """One judge per entry of ``strengths`` (logits, or None for a coin)."""
     rng = np.random.default_rng(seed)
     votes = [
-        vote(panel, trial, f"judge {k}", theta, rng)
+        vote(questionnaire, trial, f"judge {k}", theta, rng)
         for k, theta in enumerate(strengths)
-        for trial in trials(panel, 1000 * seed + k)
+        for trial in trials(questionnaire, 1000 * seed + k)
     ]
-    return Ballots(panel=panel, votes=tuple(votes), problems=(), notices=())
+    return Ballots(questionnaire=questionnaire, votes=tuple(votes), problems=(), notices=())
 
 
 def documents(given):
@@ -64,7 +64,7 @@ def documents(given):
     for judge in given.judges:
         out[judge] = {
             "schema": 1,
-            "panel": given.panel.digest,
+            "questionnaire": given.questionnaire.digest,
             "judge": judge,
             "seed": 1,
             "votes": [

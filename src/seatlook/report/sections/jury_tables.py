@@ -1,4 +1,4 @@
-"""The result of a panel as tables and plain values."""
+"""The answers of a jury as tables and plain values."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from seatlook.errors import InputError
 from seatlook.jury.calibration import MEASURES, calibrate
-from seatlook.jury.fit import Estimate, Fit, PanelResult
+from seatlook.jury.fit import Estimate, Fit, JuryResult
 from seatlook.jury.votes import Ballots
 from seatlook.visibility.cross_check import Measures
 
@@ -16,7 +16,7 @@ Labels = Mapping[str, str]
 Part = tuple[tuple[str, ...], list[tuple[Any, ...]]]
 
 
-def fit_tables(result: PanelResult, labels: Labels) -> Iterator[Part]:
+def fit_tables(result: JuryResult, labels: Labels) -> Iterator[Part]:
     """Yield heads and rows: ranking and neighbours, with and without screening, and the judges."""
     question = result.question
     for name, fit in _fits(result):
@@ -47,7 +47,7 @@ def fit_tables(result: PanelResult, labels: Labels) -> Iterator[Part]:
     yield from _judges(result)
 
 
-def fit_values(result: PanelResult, labels: Labels) -> dict[str, Any]:
+def fit_values(result: JuryResult, labels: Labels) -> dict[str, Any]:
     """Return the same as plain values."""
     left, spread = result.side_bias
     return {
@@ -63,13 +63,15 @@ def calibration_rows(
     ballots: Ballots, key: Mapping[str, Mapping[str, Any]]
 ) -> tuple[dict[str, Any], str]:
     """Calibrate the scores on the votes; return figures, or none and the reason."""
-    panel = ballots.panel
-    stimuli = tuple(replace(s, geometry=key[s.name]["geometry"]) for s in panel.stimuli)
+    questionnaire = ballots.questionnaire
+    stimuli = tuple(replace(s, geometry=key[s.name]["geometry"]) for s in questionnaire.stimuli)
     try:
         measures = {
             s.name: Measures(**{name: key[s.name][name] for name in MEASURES}) for s in stimuli
         }
-        found = calibrate(replace(ballots, panel=replace(panel, stimuli=stimuli)), measures)
+        found = calibrate(
+            replace(ballots, questionnaire=replace(questionnaire, stimuli=stimuli)), measures
+        )
     except KeyError as error:
         return {}, f"no {error} in the key"
     except InputError as error:
@@ -91,7 +93,7 @@ def calibration_rows(
     }, ""
 
 
-def _judges(result: PanelResult) -> Iterator[Part]:
+def _judges(result: JuryResult) -> Iterator[Part]:
     """Yield the figures of every judge, and the side bias of all."""
     heads = ("judge", "votes", "zeta", "catches", "right", "repeats", "same", "left_share")
     rows = [tuple(asdict(record).values()) for record in result.records]
@@ -99,7 +101,7 @@ def _judges(result: PanelResult) -> Iterator[Part]:
     yield ("side bias", "left_share", "half_width"), [("all judges", *result.side_bias)]
 
 
-def _fits(result: PanelResult) -> Iterator[tuple[str, Fit]]:
+def _fits(result: JuryResult) -> Iterator[tuple[str, Fit]]:
     yield "all judges", result.everyone
     if result.screened is not None:
         yield "screened judges", result.screened

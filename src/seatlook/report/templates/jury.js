@@ -1,11 +1,11 @@
 "use strict";
 (() => {
   const get = (id) => document.getElementById(id);
-  const panel = JSON.parse(get("panel").textContent);
+  const questionnaire = JSON.parse(get("questionnaire").textContent);
   const picture = {};
-  for (const s of panel.stimuli) picture[s.name] = s.picture;
-  for (const c of panel.catches) for (const s of [c.wrinkled, c.smooth]) picture[s.name] = s.picture;
-  const root = `seatlook-panel-${panel.digest}`;
+  for (const s of questionnaire.stimuli) picture[s.name] = s.picture;
+  for (const c of questionnaire.catches) for (const s of [c.wrinkled, c.smooth]) picture[s.name] = s.picture;
+  const root = `seatlook-jury-${questionnaire.digest}`;
   const memory = {};
   let state = null; // {judge, session, votes} of the judge who sits here
   let shown = 0; // when the pair came into sight [ms]
@@ -24,7 +24,7 @@
       notice("This browser keeps nothing: save your answers before you close the page.");
     }
   }
-  const trials = () => panel.sessions[state.session].trials;
+  const trials = () => questionnaire.sessions[state.session].trials;
   const own = (session) => `${root}-${session}`;
   function only(...ids) {
     for (const id of ["start", "pause", "trial", "end"]) get(id).hidden = !ids.includes(id);
@@ -44,7 +44,7 @@
     if (first) pause(question); else show();
   }
   function pause(question) {
-    get("pause-question").textContent = panel.questions[question];
+    get("pause-question").textContent = questionnaire.questions[question];
     only("pause");
     get("continue").focus();
   }
@@ -52,7 +52,7 @@
     const number = state.votes.length;
     const [question, , left, right] = trials()[number];
     open = false;
-    get("question").textContent = panel.questions[question];
+    get("question").textContent = questionnaire.questions[question];
     get("said").textContent = `Pair ${number + 1} of ${trials().length}`;
     get("bar").value = number;
     get("back").disabled = number === 0;
@@ -104,7 +104,7 @@
     event.preventDefault();
     const judge = get("judge").value.trim();
     const session = Number(get("session").value) - 1;
-    if (!judge || !panel.sessions[session]) return;
+    if (!judge || !questionnaire.sessions[session]) return;
     const before = read(own(session));
     if (before && before.judge !== judge) {
       notice(`Number ${session + 1} was taken by somebody else on this machine; take another one.`);
@@ -118,8 +118,8 @@
     next();
   }
   function save() {
-    const seed = panel.sessions[state.session].seed;
-    const answers = { schema: panel.schema, panel: panel.digest, judge: state.judge, seed, votes: state.votes };
+    const seed = questionnaire.sessions[state.session].seed;
+    const answers = { schema: questionnaire.schema, questionnaire: questionnaire.digest, judge: state.judge, seed, votes: state.votes };
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([JSON.stringify(answers, null, 1)], { type: "application/json" }));
     link.download = `votes-${state.judge.replace(/[^\p{L}\p{N}]+/gu, "-")}.json`;
@@ -137,7 +137,7 @@
   }
   function key(event) {
     if (event.repeat || event.ctrlKey || event.metaKey || event.altKey || get("trial").hidden) return;
-    const choice = { ArrowLeft: "left", ArrowRight: "right", ArrowDown: panel.ties ? "tie" : "" }[event.key];
+    const choice = { ArrowLeft: "left", ArrowRight: "right", ArrowDown: questionnaire.ties ? "tie" : "" }[event.key];
     if (choice) choose(choice);
     else if (event.key === "Backspace") back();
     else return;
