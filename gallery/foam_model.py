@@ -1,8 +1,8 @@
-"""By how much the demo's zones change with the foam's two stiffnesses, beside seeds.
+"""How the demo's zones change with the foam's two stiffnesses, beside seeds.
 
 Run it with: python gallery/foam_model.py [ELEMENT_SIZE_MM]
 
-The column's curve (settling) is varied by a fifth, the half-space modulus (short waves) by two:
+The column's curve (settlement) is varied by a fifth, the half-space modulus (short waves) by two:
 no elastic body is solved here. Writes docs/charts/foam_model.csv, one row per run and zone, and the
 changes against the base as foam_model.svg; finished runs are not run again.
 """
@@ -21,7 +21,7 @@ import numpy as np
 from seatlook import assemble, load_scene, solve, surface_strains, wrinkle_indices, zone_table
 from seatlook.cli._demo import write_demo
 from seatlook.model import Scene
-from seatlook.results.gap import standoff, zone_standoff
+from seatlook.results.gap import gap, zone_gaps
 
 TABLE = Path(__file__).parents[1] / "docs" / "charts" / "foam_model.csv"
 # name -> factors on the column's stress and on the half-space modulus, seed
@@ -34,8 +34,8 @@ RUNS = {
     "seed 1": (1.0, 1.0, 1),
     "seed 2": (1.0, 1.0, 2),
 }
-FIGURES = ("w2_mean", "w_stretch_mean", "w_compression_mean", "standoff_mean_mm")
-LABELS = dict(zip(FIGURES, ("W2", "W_stretch", "W_compression", "standoff"), strict=True))
+FIGURES = ("w2_mean", "w_stretch_mean", "w_compression_mean", "gap_mean_mm")
+LABELS = dict(zip(FIGURES, ("W2", "W_stretch", "W_compression", "gap"), strict=True))
 COLUMNS = ("run", "element_size_mm", "zone", "area_cm2", *FIGURES, "status")
 
 
@@ -52,7 +52,7 @@ def measure(scene: Scene, name: str, size: float) -> list[dict[str, float | str]
         scene.c_threshold,
         curvature=scene.curvature,
     )
-    off = {row.zone: 1e3 * row.mean for row in zone_standoff(solution, standoff(solution))}
+    gaps = {row.zone: 1e3 * row.mean for row in zone_gaps(solution, gap(solution))}
     return [
         {
             "run": name,
@@ -60,7 +60,7 @@ def measure(scene: Scene, name: str, size: float) -> list[dict[str, float | str]
             "zone": row.zone,
             "area_cm2": 1e4 * row.area,
             **{figure: getattr(row, figure) for figure in FIGURES[:-1]},
-            "standoff_mean_mm": off[row.zone],
+            "gap_mean_mm": gaps[row.zone],
             "status": solution.status,
         }
         for row in zone_table(solution, indices)
@@ -116,7 +116,7 @@ def main(size: float) -> None:
     with tempfile.TemporaryDirectory() as folder:
         missing = [name for name in RUNS if name not in done]
         if missing:
-            write_demo(Path(folder), ease={}, starve={}, material="leather-laminate",
+            write_demo(Path(folder), ease={}, short={}, material="leather-laminate",
                        insert="leather-laminate", element_size_mm=size, seed=0)  # fmt: skip
             scene = load_scene(Path(folder) / "scene.toml")
         for name in missing:

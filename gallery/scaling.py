@@ -63,7 +63,7 @@ def main(sizes: tuple[float, ...]) -> None:
         scene = Path(folder) / "scene.toml"
         missing = [case for case in wanted if case not in done]
         if missing:
-            write_demo(Path(folder), ease={}, starve={}, material="leather-laminate",
+            write_demo(Path(folder), ease={}, short={}, material="leather-laminate",
                        insert="leather-laminate", element_size_mm=7.0, seed=0)  # fmt: skip
         for size, seed in missing:
             command = [sys.executable, __file__, "--one", str(scene), str(size), str(seed)]

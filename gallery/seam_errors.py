@@ -1,4 +1,4 @@
-"""Why eq. 4 does not rank every ease error and every starved panel: strains, indices, sections.
+"""Why eq. 4 does not rank every ease error and every short panel: strains, indices, sections.
 
 Run it with: python gallery/seam_errors.py [SEEDS]
 
@@ -36,11 +36,11 @@ from seatlook.wrinkle import MEASURES, section, signed_ratio  # noqa: E402
 from support import patch  # noqa: E402
 
 FloatArray = npt.NDArray[np.float64]
-EASES, STARVED = (0.0, 0.005, 0.01, 0.02, 0.04), (0.0, 0.01, 0.02, 0.03, 0.04)
+EASES, SHORT = (0.0, 0.005, 0.01, 0.02, 0.04), (0.0, 0.01, 0.02, 0.03, 0.04)
 CASES = {
     "ease, slack, no valley": ("ease", EASES, {"valley": 0.0, "tension": 0.0}),
     "ease, taut, over a valley": ("ease", EASES, {}),
-    "starved panel": ("starve", STARVED, {}),
+    "short panel": ("short", SHORT, {}),
 }
 NEXT_TO_SEAM = 0.008  # m, where the section runs along it
 COLUMNS = ("case", "amount", "seed", "along", "across", "major", "minor", "w2", "w_compression",
@@ -48,12 +48,12 @@ COLUMNS = ("case", "amount", "seed", "along", "across", "major", "minor", "w2", 
            "status")  # fmt: skip
 WHERE = {
     "ease": "along the seam, 8 mm beside it [mm]",
-    "starve": "from the seam (left) across the panel [mm]",
+    "short": "from the seam (left) across the panel [mm]",
 }
 # What should grow with the fault, and what does instead.
 RANKED = {
     "ease": ("band_w_compression", "w_compression", "w2_net", "excess_strain"),
-    "starve": ("share", "signed_share"),
+    "short": ("share", "signed_share"),
 }
 
 
@@ -70,14 +70,14 @@ def axes_of_seam(solution: Solution, panel: int) -> tuple[FloatArray, FloatArray
 
 
 def measure(scene: Scene, solution: Solution, fault: str) -> dict[str, float]:
-    """Means over the faulty panel: in the seam band, or where the test of a starved panel looks."""
+    """Means over the faulty panel: in the seam band, or where the test of a short panel looks."""
     cover, panel = solution.cover, 0 if fault == "ease" else 1
     indices = evaluation.wrinkle_map(scene, solution)
     major, minor = principal_values(solution.strain_mid)
     zone = np.array(cover.zone_names)[cover.zone]
     band = zone == "seam LEFT-RIGHT"
     chosen = (cover.panel == panel) & band
-    if fault == "starve":
+    if fault == "short":
         stretched = np.maximum(np.abs(major), np.abs(minor)) > 1e-3
         chosen = (cover.panel == panel) & (zone != "free edge") & (indices.w2 > 0.1) & stretched
     _, along, across = axes_of_seam(solution, panel)
@@ -108,7 +108,7 @@ def measure(scene: Scene, solution: Solution, fault: str) -> dict[str, float]:
 def profile(solution: Solution, fault: str) -> FloatArray:
     """Place and height below a straight edge (k, 2) [m].
 
-    Along the seam, where an ease makes waves; across it, where a starved panel is pulled.
+    Along the seam, where an ease makes waves; across it, where a short panel is pulled.
     """
     panel = 0 if fault == "ease" else 1
     middle, along, inward = axes_of_seam(solution, panel)
@@ -200,7 +200,7 @@ def draw() -> None:
             print(f"{case}: Spearman of {name} {rank:.2f}; {np.round(y, 5).tolist()}")
         column[2].set(xlabel=f"{fault} [%]", ylabel="over its largest")
         column[2].legend(title="Spearman", fontsize=7)
-    figure.savefig(CHARTS / "seam_errors.svg")
+    figure.savefig(CHARTS / "seam_errors.svg", metadata={"Date": None})
     plt.close(figure)
 
 

@@ -28,7 +28,7 @@ def demo_scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_demo(
         folder,
         ease={},
-        starve={"REAR": 0.01},
+        short={"REAR": 0.01},
         material="leather-laminate",
         insert="suede-laminate",
         element_size_mm=20.0,

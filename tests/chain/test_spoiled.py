@@ -25,7 +25,7 @@ def solve_all(folder, *, material, **spoil):
     write_demo(
         folder,
         ease=spoil.get("ease", {}),
-        starve=spoil.get("starve", {}),
+        short=spoil.get("short", {}),
         tension=tension,
         material=name,
         insert=name,
@@ -71,7 +71,7 @@ def test_patterns_are_cut_small_as_asked(tmp_path):
         write_demo(
             tmp_path / f"{tension}",
             ease={},
-            starve={},
+            short={},
             tension=tension,
             material="black-leather",
             insert="black-leather",
@@ -107,14 +107,14 @@ def test_an_ease_error_raises_compression_in_its_seam_band(tmp_path):
 
 
 @pytest.mark.validate
-def test_a_starved_insert_raises_the_share_of_stretch(tmp_path):
+def test_a_short_insert_raises_the_share_of_stretch(tmp_path):
     share = {}
-    for starve in (0.0, 0.03):
+    for short in (0.0, 0.03):
         scene, solutions = solve_all(
-            tmp_path / f"{starve}", material=LAMINATE, starve={"INSERT": starve}
+            tmp_path / f"{short}", material=LAMINATE, short={"INSERT": short}
         )
         zone = "INSERT interior"
         stretch = zone_means(scene, solutions, "w_stretch_mean", zone)
-        share[starve] = stretch / zone_means(scene, solutions, "w2_mean", zone)
-        print(f"starved {starve:.0%}: W_stretch / W2 {share[starve].mean():.3f}")
+        share[short] = stretch / zone_means(scene, solutions, "w2_mean", zone)
+        print(f"short {short:.0%}: W_stretch / W2 {share[short].mean():.3f}")
     assert standard_errors(share[0.03] - share[0.0]) > 2.8

@@ -53,7 +53,7 @@ def test_every_command_explains_itself_with_an_example(command, capsys):
             "--from: got --resume as well, expected one of them",
         ),
         (["demo", "--ease", "2%"], "--ease: got '2%', expected NAME=2%"),
-        (["demo", "--starve", "INSERT=much"], "--starve: got 'INSERT=much', expected NAME=2%"),
+        (["demo", "--short", "INSERT=much"], "--short: got 'INSERT=much', expected NAME=2%"),
         (["demo", "--material", "sued"], "did you mean 'suede'?"),
         (["init", "a.dxf", "a.obj"], "see: seatlook init --help"),
         (["materials", "sow"], "see: seatlook materials --help"),
@@ -188,7 +188,7 @@ def test_the_demo_scene_is_complete_and_says_what_is_spoiled(demo_scene):
     assert scene.seed == 3
     assert scene.materials["INSERT"].name == "suede-laminate"
     assert scene.materials["FRONT"].name == "leather-laminate"
-    assert "Spoiled on purpose: starve REAR 1.0%" in demo_scene.read_text()
+    assert "Spoiled on purpose: short REAR 1.0%" in demo_scene.read_text()
 
 
 def test_check_tells_what_would_be_solved(demo_scene, capsys):
@@ -242,7 +242,7 @@ def test_flatten_eases_one_side_of_a_seam(demo_scene, tmp_path):
     assert max(lengths) / min(lengths) == pytest.approx(1.02, abs=0.002)
 
 
-@pytest.mark.parametrize("share", ["ease", "starve"])
+@pytest.mark.parametrize("share", ["ease", "short"])
 def test_flatten_names_a_seam_or_panel_that_does_not_exist(demo_scene, tmp_path, capsys, share):
     surface = str(demo_scene.with_name("design.obj"))
     assert run(["flatten", surface, "--out", str(tmp_path / "o"), f"--{share}", "INSRT=2%"]) == 2
@@ -315,14 +315,14 @@ def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
     maps = {path.stem.removesuffix("-own") for path in evaluated.glob("maps/*.png")}
     indices = {"w1", "w2", "w2_net", "w_stretch", "w_compression"}
     texture = {"stretch_along", "stretch_across", "shear", "grain_drift", "checker"}
-    assert maps == indices | texture | {"standoff", "deviation"}
+    assert maps == indices | texture | {"gap", "deviation"}
     page = (evaluated / "index.html").read_text()
     for part in (
         "suede under bulb left",
         "W_compression",
         "judgement",
         "texture pvc",
-        "Standoff",
+        "Gap",
         "Shape against the foam",
         "Shape against the design",
         "Seam lines",

@@ -174,14 +174,14 @@ def test_demo_takes_an_ease_of_four_percent(surface, flattened):
         assert seam.b == pytest.approx(plain[seam.seam].b, rel=2e-4)
 
 
-def test_starving_makes_a_panel_narrower_and_not_shorter():
+def test_a_short_panel_is_narrower_and_not_shorter():
     surface, _ = half_pipe()
-    plain, starved = flatten(surface), flatten(surface, starve={"R": 0.03})
-    a, b = plain.pattern.panel("R"), starved.pattern.panel("R")
+    plain, short = flatten(surface), flatten(surface, short={"R": 0.03})
+    a, b = plain.pattern.panel("R"), short.pattern.panel("R")
     assert width(b) / width(a) == pytest.approx(0.97, abs=1e-9)
     assert np.ptp(b.outline[:, 1]) == pytest.approx(np.ptp(a.outline[:, 1]), rel=1e-9)
-    assert width(starved.pattern.panel("L")) == pytest.approx(width(plain.pattern.panel("L")))
-    assert starved.strain[surface.panel == 1, 1].mean() == pytest.approx(0.031, abs=1e-3)
+    assert width(short.pattern.panel("L")) == pytest.approx(width(plain.pattern.panel("L")))
+    assert short.strain[surface.panel == 1, 1].mean() == pytest.approx(0.031, abs=1e-3)
 
 
 def test_tension_makes_everything_smaller():
@@ -200,7 +200,7 @@ def test_wrong_names_and_fractions_are_all_named():
         "ease: got 'L.Q', expected one of L.R, R.L (did you mean 'L.R'?)",
         "ease R.L: got 0.5, expected -0.2 to 0.2",
     ]
-    with pytest.raises(InputError, match=r"starve: got 'X', expected one of L, R"):
-        flatten(surface, starve={"X": 0.1})
+    with pytest.raises(InputError, match=r"short: got 'X', expected one of L, R"):
+        flatten(surface, short={"X": 0.1})
     with pytest.raises(InputError, match=r"tension: got nan, expected -0\.2 to 0\.2"):
         flatten(surface, tension=float("nan"))

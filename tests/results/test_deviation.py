@@ -8,7 +8,7 @@ import pytest
 from seatlook.errors import InputError
 from seatlook.model import Design, Points, Stitching
 from seatlook.results.deviation import deviation, seam_lines
-from seatlook.results.gap import zone_standoff
+from seatlook.results.gap import zone_gaps
 from support.covers import cover, sheet, sphere
 from support.io_samples import as_placed
 from support.reference.lit_sheets import grid
@@ -50,7 +50,7 @@ def test_level_cover_above_and_below(height):
     s = finished(lambda x, y: height + 0 * x)
     np.testing.assert_allclose(deviation(s, level()), height, atol=1e-12)
     np.testing.assert_allclose(deviation(s, level(visible=True)), height + 0.0005, atol=1e-12)
-    rows = zone_standoff(s, deviation(s, level()))
+    rows = zone_gaps(s, deviation(s, level()))
     assert sum(row.area for row in rows) == pytest.approx(0.16 * 0.12)
     for row in rows:
         assert (row.mean, row.p95) == pytest.approx((height, abs(height)))
@@ -64,7 +64,7 @@ def test_ramp_has_its_share_in_the_tail():
     one = dataclasses.replace(
         s, cover=dataclasses.replace(s.cover, zone=s.cover.panel.copy(), zone_names=("L", "R"))
     )
-    left_row, right_row = zone_standoff(one, off)
+    left_row, right_row = zone_gaps(one, off)
     assert left_row.p95 < 1e-12
     # 0 to 8 mm, evenly: 95 % lie below 7.6 mm, to a face.
     assert right_row.p95 == pytest.approx(0.0076, abs=0.0006)

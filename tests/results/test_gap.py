@@ -1,4 +1,4 @@
-"""How far a cover stands off its foam."""
+"""The gap between a cover and its foam."""
 
 import dataclasses
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatlook.errors import InputError
-from seatlook.results.gap import standoff, zone_standoff
+from seatlook.results.gap import gap, zone_gaps
 from support.covers import cover, flat_foam, foam, sheet, sphere
 from support.io_samples import as_placed
 
@@ -23,14 +23,14 @@ def solved(height, *, zone=None):
 
 
 def test_half_a_thickness_above_the_foam_is_where_it_should_be():
-    off = standoff(solved(lambda x: 0.0005 + 0 * x))
-    np.testing.assert_allclose(off, 0.0, atol=1e-5)
+    gaps = gap(solved(lambda x: 0.0005 + 0 * x))
+    np.testing.assert_allclose(gaps, 0.0, atol=1e-5)
 
 
 @pytest.mark.parametrize("height", [0.004, -0.003])
 def test_above_and_pressed_in(height):
-    off = standoff(solved(lambda x: height + 0 * x))
-    np.testing.assert_allclose(off, height - 0.0005, atol=1e-5)
+    gaps = gap(solved(lambda x: height + 0 * x))
+    np.testing.assert_allclose(gaps, height - 0.0005, atol=1e-5)
 
 
 def test_coarse_faces_on_a_sphere_are_not_below_it():
@@ -39,13 +39,13 @@ def test_coarse_faces_on_a_sphere_are_not_below_it():
     x[:, 2] = 0.06
     x *= 0.0605 / np.linalg.norm(x, axis=1)[:, None]
     s = as_placed(cover([(X, T, x)], foam=foam(*sphere(0.06, 5)), h=0.02))
-    np.testing.assert_allclose(standoff(s), 0.0, atol=1e-4)
+    np.testing.assert_allclose(gap(s), 0.0, atol=1e-4)
 
 
 def test_zones_are_weighted_by_area():
     s = solved(lambda x: 0.0005 + np.where(x > 0, 0.1 * x, 0.0), zone=True)
-    off = standoff(s)
-    left, right = zone_standoff(s, off)
+    gaps = gap(s)
+    left, right = zone_gaps(s, gaps)
     assert (left.zone, right.zone) == ("left", "right")
     assert left.area + right.area == pytest.approx(0.16 * 0.08)
     assert left.measured == right.measured == 1.0
@@ -61,15 +61,15 @@ def test_zones_are_weighted_by_area():
 def test_a_cover_without_foam_is_refused():
     s = solved(lambda x: 0 * x)
     with pytest.raises(InputError, match="foam: got nothing, expected a cover with a foam"):
-        standoff(dataclasses.replace(s, cover=dataclasses.replace(s.cover, foam=None)))
+        gap(dataclasses.replace(s, cover=dataclasses.replace(s.cover, foam=None)))
 
 
 def test_what_is_far_from_the_foam_is_not_known():
     s = solved(lambda x: np.where(x > 0, 0.2, 0.0005), zone=True)
-    off = standoff(s)
+    gaps = gap(s)
     right = s.cover.zone == 1
-    assert np.isnan(off[right]).all()
-    (left,) = zone_standoff(s, off)
+    assert np.isnan(gaps[right]).all()
+    (left,) = zone_gaps(s, gaps)
     assert left.zone == "left"
     assert 0.8 < left.measured < 1.0
-    assert abs(np.nanmedian(off)) < 1e-5
+    assert abs(np.nanmedian(gaps)) < 1e-5

@@ -75,7 +75,7 @@ def scene(
     tension=0.005,
     valley=0.005,
     ease=0.0,
-    starve=0.0,
+    short=0.0,
     **change,
 ):
     """Scene of the patch; ``change`` goes into the Scene."""
@@ -86,7 +86,7 @@ def scene(
         drawn,
         tension=tension,
         ease={"LEFT-RIGHT": ease} if ease else {},
-        starve={"RIGHT": starve} if starve else {},
+        short={"RIGHT": short} if short else {},
     )
     patches = {p.name: p for p in drawn.patches()}
     sewn = {name for seam in flat.pattern.seams for name in (seam.a, *seam.b)}

@@ -15,7 +15,7 @@ def spoiled(tmp_path_factory):
     write_demo(
         folder,
         ease={"INSERT-BOLSTER_L": 0.04},
-        starve={},
+        short={},
         tension=0.005,
         material="black-leather",
         insert="black-leather",

@@ -21,7 +21,7 @@ def covers(tmp_path_factory):
     write_demo(
         folder,
         ease={},
-        starve={},
+        short={},
         material="leather-laminate",
         insert="leather-laminate",
         element_size_mm=7.0,

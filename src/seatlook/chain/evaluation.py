@@ -15,7 +15,7 @@ from seatlook.model import Camera, Design, FloatArray, Limit, Scene, Solution, W
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES, Verdict
 from seatlook.results.deviation import SeamLine, deviation, seam_lines
-from seatlook.results.gap import ZoneStandoff, standoff, zone_standoff
+from seatlook.results.gap import ZoneGap, gap, zone_gaps
 from seatlook.solver import solve
 from seatlook.wrinkle import (
     Surface,
@@ -44,7 +44,7 @@ MAPS: Mapping[str, str] = MappingProxyType(
 # Maps in mm, about 0.
 DISTANCES: Mapping[str, str] = MappingProxyType(
     {
-        "standoff": "distance from the foam as drawn: above 0 it stands off, below 0 it presses in",
+        "gap": "from the drawn foam to the cover: below 0 the foam is pressed in",
         "deviation": "distance from the design surface: above 0 outside, below 0 inside",
     }
 )
@@ -60,7 +60,7 @@ class Evaluation:
     solution: Solution
     indices: WrinkleMap
     zones: tuple[ZoneRow, ...]
-    standoff: FloatArray
+    gap: FloatArray
     deviation: FloatArray | None
     camera: Camera
     pictures: MappingProxyType[tuple[str, str], str]
@@ -101,7 +101,7 @@ def evaluate(
     indices = wrinkle_map(scene, solution)
     zones = zone_table(solution, indices, w2_net(surface(scene, solution, indices)))
     write_zones(zones, out / "zones.csv")
-    off = {"standoff": standoff(solution)}
+    off = {"gap": gap(solution)}
     if scene.design is not None:
         off["deviation"] = deviation(solution, scene.design)
         write_shape(solution, scene.design, off["deviation"], out)
@@ -112,7 +112,7 @@ def evaluate(
         solution=solution,
         indices=indices,
         zones=zones,
-        standoff=off["standoff"],
+        gap=off["gap"],
         deviation=off.get("deviation"),
         camera=camera,
         pictures=draw_pictures(scene, solution, camera, out, say),
@@ -239,14 +239,14 @@ def draw_distance(
 def write_shape(solution: Solution, design: Design, off: FloatArray, out: Path) -> None:
     """Write ``shape.csv``, the deviation (m,) [m] by zone, and ``seam-lines.csv``, both in mm."""
     for name, rows in (
-        ("shape.csv", shape_rows(zone_standoff(solution, off))),
+        ("shape.csv", shape_rows(zone_gaps(solution, off))),
         ("seam-lines.csv", seam_line_rows(seam_lines(solution, design))),
     ):
         if rows:
             io.write_table(out / name, list(rows[0]), [tuple(row.values()) for row in rows])
 
 
-def shape_rows(zones: tuple[ZoneStandoff, ...]) -> list[dict[str, object]]:
+def shape_rows(zones: tuple[ZoneGap, ...]) -> list[dict[str, object]]:
     """Zones and their distances, in mm and cm2."""
     return [
         {

@@ -22,7 +22,7 @@ def demo(
     *,
     out: Out = Path("out/demo"),
     ease: Shares = (),
-    starve: Shares = (),
+    short: Shares = (),
     tension_percent: float = 1.0,
     material: str = "leather-laminate",
     insert: str | None = None,
@@ -46,7 +46,7 @@ def demo(
     ----------
     ease
         SEAM=2%: make one sewing line of this seam longer than its partner, a sewing fault.
-    starve
+    short
         PANEL=3%: make this panel narrower across its grain.
     tension_percent
         All panels are cut smaller by this share, so that the cover is taut.
@@ -59,11 +59,11 @@ def demo(
     files_only
         Write the files, and evaluate nothing.
     """
-    wanted = _shares("--ease", ease), _shares("--starve", starve)
+    wanted = _shares("--ease", ease), _shares("--short", short)
     write_demo(
         out,
         ease=wanted[0],
-        starve=wanted[1],
+        short=wanted[1],
         tension=tension_percent / 100,
         material=material,
         insert=insert or material,
@@ -87,7 +87,7 @@ def flatten(
     seam_lines: Path | None = None,
     unit: Literal["mm", "m"] = "mm",
     ease: Shares = (),
-    starve: Shares = (),
+    short: Shares = (),
     tension_percent: float = 0.0,
     allowance_mm: float = 10.0,
     material: str | None = None,
@@ -112,7 +112,7 @@ def flatten(
         Unit of the surface file.
     ease
         SEAM=2%: make one sewing line of this seam longer than its partner.
-    starve
+    short
         PANEL=3%: make this panel narrower across its grain.
     tension_percent
         All panels are cut smaller by this share, so that the cover is taut.
@@ -132,7 +132,7 @@ def flatten(
         fabrics={} if fabric is None else dict.fromkeys(form.panel_names, fabric),
         allowance=allowance_mm / 1e3,
         ease=_shares("--ease", ease),
-        starve=_shares("--starve", starve),
+        short=_shares("--short", short),
         tension=tension_percent / 100,
     )
     if seam_lines is not None:
@@ -173,7 +173,7 @@ def write_demo(
     out: Path,
     *,
     ease: dict[str, float],
-    starve: dict[str, float],
+    short: dict[str, float],
     tension: float = 0.01,
     material: str,
     insert: str,
@@ -193,7 +193,7 @@ def write_demo(
     with progress() as show:
         show("flatten")
         surface = seats.demo_design(element_size=surface_size)
-        flat = flattening.flatten(surface, tension=tension, ease=ease, starve=starve)
+        flat = flattening.flatten(surface, tension=tension, ease=ease, short=short)
         foam = seats.demo_foam_mesh(element_size=surface_size, cover_thickness=thickness)
     _write_panels(surface, out / "design.obj")
     io.write_obj(foam.vertices, foam.faces, out / "foam.obj")
@@ -207,7 +207,7 @@ def write_demo(
         tension=tension,
         placement=_placement(flat),
         spoiled=[*(f"ease {k} {v:.1%}" for k, v in ease.items()),
-                 *(f"starve {k} {v:.1%}" for k, v in starve.items())],
+                 *(f"short {k} {v:.1%}" for k, v in short.items())],
     )  # fmt: skip
     files.write_text(out / "scene.toml", scene + "\n")
 

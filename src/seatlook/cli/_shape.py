@@ -37,7 +37,7 @@ def shape(
     """
     from seatlook.chain.evaluation import draw_distance, seam_line_rows, shape_rows, write_shape
     from seatlook.results.deviation import deviation, seam_lines
-    from seatlook.results.gap import zone_standoff
+    from seatlook.results.gap import zone_gaps
 
     read = load(scene)
     if read.design is None:
@@ -52,6 +52,6 @@ def shape(
     rows = (
         seam_line_rows(seam_lines(solution, read.design))
         if seams
-        else shape_rows(zone_standoff(solution, off))
+        else shape_rows(zone_gaps(solution, off))
     )
     table(list(rows[0]) if rows else (), [tuple(row.values()) for row in rows], json=json)

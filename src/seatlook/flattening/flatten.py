@@ -85,7 +85,7 @@ def flatten(
     allowance: float = 0.010,
     tension: float = 0.0,
     ease: Mapping[str, float] = MappingProxyType({}),
-    starve: Mapping[str, float] = MappingProxyType({}),
+    short: Mapping[str, float] = MappingProxyType({}),
     seam_strain: float = 0.015,
     fabrics: Mapping[str, Fabric] = MappingProxyType({}),
 ) -> Flattened:
@@ -104,7 +104,7 @@ def flatten(
         This sewing line becomes longer than its partner by the fraction; the panel is stretched
         along it, less and less over 150 mm or its width. A seam's name stands for the edge of its
         first panel.
-    starve : panel name -> fraction
+    short : panel name -> fraction
         The panel becomes narrower across its grain.
     seam_strain : float
         Largest share of the strain that a seam line may take.
@@ -119,7 +119,7 @@ def flatten(
     Raises
     ------
     InputError
-        A panel is not a disk; ``ease`` or ``starve`` name nothing or ask too much.
+        A panel is not a disk; ``ease`` or ``short`` name nothing or ask too much.
     SeatlookError
         A panel cannot be flattened without folding, or the lines of a seam differ by more than
         ``SEAM_TOLERANCE`` though none of them is eased.
@@ -130,7 +130,7 @@ def flatten(
     first = {seam.name: seam.a for seam in seams}
     ease = {first.get(name, name): value for name, value in ease.items()}
     _check("ease", ease, [s.name for s in borders if s.neighbour != FREE])
-    _check("starve", starve, surface.panel_names)
+    _check("short", short, surface.panel_names)
     _check("tension", {"": tension}, [""])
 
     _check("fabrics", dict.fromkeys(fabrics, 0.0), surface.panel_names)
@@ -144,9 +144,9 @@ def flatten(
         x = relaxed(patch, own, ratio, alone[patch.name], ease, fabric=fabric)
         # A panel of a fabric has kept the direction in which its grain was laid.
         x = (_grain_up(patch, x) if fabric is None else x) * (1 - tension)
-        flat[patch.name] = x * [1 - starve.get(patch.name, 0.0), 1.0]
+        flat[patch.name] = x * [1 - short.get(patch.name, 0.0), 1.0]
     found = _report(surface, patches, borders, _side_by_side(flat), allowance, fabrics)
-    _check_seams(found, spoiled={*ease, *starve})
+    _check_seams(found, spoiled={*ease, *short})
     return found
 
 

@@ -1,4 +1,4 @@
-"""The finished shape against the one that was meant: the foam, covered without a gap."""
+"""The gap between the finished cover and its foam, face by face and zone by zone."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from seatlook.solver.foam.distance import distance_field
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ZoneStandoff:
-    """How far a zone is off [m], from the foam or its design, weighted by rest area.
+class ZoneGap:
+    """Gap [m] between a zone and the foam, or its design surface, weighted by rest area.
 
     Parameters
     ----------
-    area : float [m2]      with a known distance
+    area : float [m2]      with a known gap
     measured : float       share of the zone's area that this is
-    p95 : float            95 % of the area are off by no more than this, to either side
+    p95 : float            size of the gap that 95 % of the area do not exceed
     """
 
     zone: str
@@ -33,14 +33,13 @@ class ZoneStandoff:
     highest: float
 
 
-def standoff(solution: Solution) -> FloatArray:
-    """Signed distance (m,) [m] of every face, as a mean of its corners, from the shape meant.
+def gap(solution: Solution) -> FloatArray:
+    """Signed gap (m,) [m] between every face and the foam, as a mean of its corners.
 
-    That shape is the untouched foam with the cover lying on it: the mid surface half a thickness
-    above the foam. It is above 0 where the cover bridges a hollow or stands in a wrinkle, below 0
-    where it presses the foam in.
-
-    Faces farther away than the foam's distance field reaches, such as a skirt, are nan.
+    It is 0 where the cover lies on the untouched foam: its mid surface half a thickness above.
+    It is above 0 where the cover bridges a hollow or stands in a wrinkle, below 0 where it presses
+    the foam in. Faces farther away than the foam's distance field reaches, such as a skirt, are
+    nan.
 
     Raises
     ------
@@ -53,26 +52,31 @@ def standoff(solution: Solution) -> FloatArray:
     field = distance_field(cover.foam.vertices, cover.foam.faces)
     # At the vertices: the middle of a flat face lies below the curved cover it stands for.
     distance, _ = field.at(solution.positions)
-    off = distance[cover.faces].mean(axis=1) - 0.5 * cover.thickness
-    return np.where(np.isfinite(off), off, np.nan)
+    gaps = distance[cover.faces].mean(axis=1) - 0.5 * cover.thickness
+    return np.where(np.isfinite(gaps), gaps, np.nan)
 
 
-def zone_standoff(solution: Solution, off: FloatArray) -> tuple[ZoneStandoff, ...]:
-    """Sum the distances (m,) [m] of the faces up over every zone, where they are known."""
+def zone_gaps(solution: Solution, gaps: FloatArray) -> tuple[ZoneGap, ...]:
+    """Sum the gaps (m,) [m] of the faces up over every zone, where they are known.
+
+    Parameters
+    ----------
+    gaps : (m,) float64 [m]   of ``gap``, or of ``deviation``; nan where not known
+    """
     cover = solution.cover
-    known = np.isfinite(off)
+    known = np.isfinite(gaps)
     rows = []
     for i, name in enumerate(cover.zone_names):
-        inside = cover.zone == i
-        mine = inside & known
-        if not mine.any():
+        zone = cover.zone == i
+        measured = zone & known
+        if not measured.any():
             continue
-        area, value = cover.rest_area[mine], off[mine]
+        area, value = cover.rest_area[measured], gaps[measured]
         rows.append(
-            ZoneStandoff(
+            ZoneGap(
                 zone=name,
                 area=float(area.sum()),
-                measured=float(area.sum() / cover.rest_area[inside].sum()),
+                measured=float(area.sum() / cover.rest_area[zone].sum()),
                 mean=float(np.average(value, weights=area)),
                 rms=float(np.sqrt(np.average(value**2, weights=area))),
                 p95=quantile(np.abs(value), area, 0.95),

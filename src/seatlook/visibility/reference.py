@@ -95,7 +95,7 @@ def smooth_reference(solution: Solution, camera: Camera, *, cutoff: float = CUTO
 def design_reference(solution: Solution, camera: Camera) -> Solution:
     """Lay the cover on the foam as designed, half its thickness above it, along the camera's rays.
 
-    Unlike the smoothed shape it holds no sag and no standoff either: whatever the cover does
+    Unlike the smoothed shape it holds no sag and no gap either: whatever the cover does
     otherwise than drawn counts as visible.
 
     Raises

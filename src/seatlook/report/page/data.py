@@ -150,7 +150,7 @@ class PageData:
     zones : one row per zone
     differences : what a table compares -> the table; stands first on a page of several variants
     seams : one row per seam: its two lengths and the ease between them
-    shape : one row per zone: how far it stands off the foam
+    shape : one row per zone: its gap to the foam
     wrinkles : the worst wrinkles and the distortion of the texture
     making : energy balance, hooks, and pictures of the stages
     design : the shape against its design surface; None where there is none

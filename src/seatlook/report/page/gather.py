@@ -24,7 +24,7 @@ from seatlook.report.page.write import write_page
 from seatlook.report.sections.design import FILES, design_section, distance_table
 from seatlook.report.sections.making import making_section
 from seatlook.report.sections.wrinkles import wrinkle_section
-from seatlook.results.gap import zone_standoff
+from seatlook.results.gap import zone_gaps
 from seatlook.solver import foam_wavelength
 from seatlook.solver.process import verdict
 from seatlook.solver.process.process import RESIDUAL
@@ -216,8 +216,8 @@ def _zones(evaluation: Evaluation) -> Table:
 
 
 def _shape(evaluation: Evaluation) -> Table:
-    """Standoff of the zones, the farthest from the foam first, and faces through each other."""
-    found = distance_table(zone_standoff(evaluation.solution, evaluation.standoff))
+    """Gap of the zones to the foam, the largest first, and faces through each other."""
+    found = distance_table(zone_gaps(evaluation.solution, evaluation.gap))
     figures = evaluation.solution.figures
     none = 0.0 if "intersecting_pairs" in figures else None
     return Table(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from seatlook.chain.evaluation import Evaluation
 from seatlook.model.table import Table
 from seatlook.results.deviation import seam_lines
-from seatlook.results.gap import ZoneStandoff, zone_standoff
+from seatlook.results.gap import ZoneGap, zone_gaps
 
 DISTANCE_HEADS = (
     "zone",
@@ -37,7 +37,7 @@ def design_section(evaluation: Evaluation) -> DesignSection | None:
         return None
     seams = seam_lines(evaluation.solution, design)
     return DesignSection(
-        zones=distance_table(zone_standoff(evaluation.solution, evaluation.deviation)),
+        zones=distance_table(zone_gaps(evaluation.solution, evaluation.deviation)),
         seams=Table(
             heads=("seam", "length [mm]", "mean [mm]", "largest [mm]"),
             rows=tuple(
@@ -54,7 +54,7 @@ def design_section(evaluation: Evaluation) -> DesignSection | None:
     )
 
 
-def distance_table(rows: tuple[ZoneStandoff, ...]) -> Table:
+def distance_table(rows: tuple[ZoneGap, ...]) -> Table:
     """Zones, the one farthest off first, without the free edges."""
     return Table(
         heads=DISTANCE_HEADS,
