@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from seatlook.report import write_page
-from seatlook.report.page.data import Spot
+from seatlook.report.page.types import Spot
 from support.browsers import all_images_decode
 from support.pages import RIGS, page_data, write_png
 

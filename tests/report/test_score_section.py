@@ -7,7 +7,7 @@ import importlib
 import pytest
 
 from seatlook.report import Check, MapView, Table, write_page
-from seatlook.report.page.data import ScoreSection
+from seatlook.report.page.types import ScoreSection
 from seatlook.report.page.write import page_html
 from support.pages import page_data, picture, write_png
 

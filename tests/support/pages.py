@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook.report import Check, MapView, PageData, RigHead, Table
-from seatlook.report.page.data import ScoreSection, Spot
+from seatlook.report.page.types import ScoreSection, Spot
 
 SIZE = (64, 36)
 TEXTURES = ("black leather", "suede <insert>")

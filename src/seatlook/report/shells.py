@@ -11,8 +11,9 @@ from seatlook import __version__
 from seatlook.chain.evaluation import MAPS, label
 from seatlook.chain.shell_maps import PICTURE, DrawnState
 from seatlook.model.table import Table
-from seatlook.report.page.data import MapView, PageData
+from seatlook.report.page.data import PageData
 from seatlook.report.page.gather import rig_head
+from seatlook.report.page.types import MapView
 from seatlook.report.page.write import write_page
 from seatlook.report.sections.wrinkles import distortion_views, section_of
 

@@ -6,15 +6,18 @@ import math
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from seatlook.errors import InputError
 from seatlook.model.table import Table
-
-if TYPE_CHECKING:
-    from seatlook.report.sections.design import DesignSection
-    from seatlook.report.sections.making import MakingSection
-    from seatlook.report.sections.wrinkles import WrinkleSection
+from seatlook.report.page.types import (
+    Check,
+    DesignSection,
+    MakingSection,
+    MapView,
+    ScoreSection,
+    Spot,
+    WrinkleSection,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,78 +62,6 @@ class Dot:
     @property
     def _radius(self) -> float:
         return 90.0 - max(self.elevation, 0.0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Spot:
-    """A place to jump to: its label and pixel in the pictures."""
-
-    label: str
-    x: float
-    y: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapView:
-    """A wrinkle index drawn on the cover, with its colour bar, from the gallery's camera.
-
-    Parameters
-    ----------
-    image : path relative to the page
-    low, high : float [unit]    values at the two ends of the colour bar
-    meaning : one sentence for a reader who does not know the equation
-    alone : path of the same map in a range of its own, which ends at ``alone_high``; or None
-    """
-
-    name: str
-    image: str
-    low: float
-    high: float
-    unit: str = "1"
-    meaning: str = ""
-    alone: str | None = None
-    alone_high: float = 1.0
-
-    def __post_init__(self) -> None:
-        if not self.low < self.high:
-            raise InputError.single(
-                f"map {self.name}", got=f"{self.low:g} to {self.high:g}", expected="low < high"
-            )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Check:
-    """One condition of "converged" or one limit of [accept]: a value, its limit, kept or not."""
-
-    name: str
-    value: str
-    limit: str
-    kept: bool
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScoreSection:
-    """What the page says about visibility; only ``refused`` is set where no score can be given.
-
-    Parameters
-    ----------
-    grid : a row per texture, a column per rig: VWI and equivalent height
-    causes : a row per cell: VWI over all, where W_stretch and where W_compression is, cross-checks
-    zones : a row per zone: worst VWI of each texture, and its equivalent height
-    sentences : what follows from them
-    cells : (texture, rig) -> VWI, marked in the grid of pictures
-    """
-
-    grid: Table | None = None
-    causes: Table | None = None
-    zones: Table | None = None
-    sentences: tuple[str, ...] = ()
-    maps: tuple[MapView, ...] = ()
-    checks: tuple[Check, ...] = ()
-    refused: str = ""
-    cells: MappingProxyType[tuple[str, str], float] = field(
-        default_factory=lambda: MappingProxyType({})
-    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

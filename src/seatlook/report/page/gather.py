@@ -17,9 +17,10 @@ from seatlook.chain.evaluation import DISTANCES, MAPS, RESULT, Evaluation, label
 from seatlook.model import Light, Rig, Scene, Solution
 from seatlook.model.table import Table, number
 from seatlook.pbr import ev100, lux_at_seat, offscreen_backend, render_map
-from seatlook.report.page.data import Check, MapView, PageData, RigHead, ScoreSection
+from seatlook.report.page.data import PageData, RigHead
 from seatlook.report.page.in_short import missed, seen, wrinkled
 from seatlook.report.page.parameters import parameter_tables, parameter_toml
+from seatlook.report.page.types import Check, MapView, ScoreSection
 from seatlook.report.page.write import write_page
 from seatlook.report.sections.design import FILES, design_section, distance_table
 from seatlook.report.sections.making import making_section

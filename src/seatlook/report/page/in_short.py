@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from seatlook.model.table import number
-from seatlook.report.page.data import Check
+from seatlook.report.page.types import Check
 from seatlook.wrinkle import ZoneRow
 
 _MOSTLY = 0.6  # share of W2 from which one cause is named alone

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from seatlook.chain.evaluation import Evaluation
 from seatlook.model.table import Table
+from seatlook.report.page.types import DesignSection
 from seatlook.results.deviation import seam_lines
 from seatlook.results.gap import ZoneGap, zone_gaps
 
@@ -19,15 +18,6 @@ DISTANCE_HEADS = (
     "measured [%]",
 )
 FILES = ("shape.csv", "seam-lines.csv")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DesignSection:
-    """One row per zone, and one per seam; ``visible`` if the design is the visible side."""
-
-    zones: Table
-    seams: Table
-    visible: bool
 
 
 def design_section(evaluation: Evaluation) -> DesignSection | None:

@@ -2,46 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 
 from seatlook.model import Solution
 from seatlook.model.table import Table
+from seatlook.report.page.types import MakingSection
 from seatlook.results.energy_balance import energy_balance
 from seatlook.results.ring_pulls import overpulled, ring_pulls
 
 # Left by "seatlook timeline" in the folder of the page: a strip and an animation.
 STRIP, ANIMATION = "timeline.png", "timeline.gif"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MakingSection:
-    """What the section shows.
-
-    Parameters
-    ----------
-    work : one row per part of the energy balance; None where the solver kept no account
-    hooks : one row per hook: its rings and what they pull
-    over : sentences on hooks that pull harder than their limit
-    strip, animation : paths of these pictures; None where they are not in the folder
-    """
-
-    work: Table | None
-    hooks: Table
-    over: tuple[str, ...]
-    strip: str | None
-    animation: str | None
-
-    @property
-    def pictures(self) -> tuple[str, ...]:
-        """Paths of what there is of both."""
-        return tuple(name for name in (self.strip, self.animation) if name)
-
-    @property
-    def shown(self) -> bool:
-        """Whether there is anything to show."""
-        return bool(self.work or self.hooks.rows or self.pictures)
 
 
 def making_section(solution: Solution, folder: Path) -> MakingSection:

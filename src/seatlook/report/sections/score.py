@@ -17,7 +17,7 @@ from seatlook.model.progress import Progress
 from seatlook.model.scene import SCORE_MEASURES
 from seatlook.model.table import Table, number
 from seatlook.pbr.maps.pixel_map import render_pixel_map
-from seatlook.report.page.data import Check, MapView, ScoreSection
+from seatlook.report.page.types import Check, MapView, ScoreSection
 from seatlook.visibility.light_search import WorstLight
 from seatlook.visibility.observer import OBSERVER
 from seatlook.visibility.scoring import SceneScore, score_scene

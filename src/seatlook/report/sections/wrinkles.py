@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
 
-from seatlook.chain.evaluation import surface
+import numpy as np
+
+from seatlook.chain.evaluation import Evaluation, surface
 from seatlook.chain.findings import (
     CHECKER,
     DISTORTION_MAPS,
@@ -16,20 +17,12 @@ from seatlook.chain.findings import (
     find,
     write_findings,
 )
+from seatlook.model import Camera
 from seatlook.model.table import Table, number
+from seatlook.pbr import Picture
 from seatlook.report.page.chart import HEIGHT, WIDTH, Tick
-from seatlook.report.page.data import MapView, Spot
-from seatlook.wrinkle import map_top, w2_net
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    import numpy as np
-
-    from seatlook.chain.evaluation import Evaluation
-    from seatlook.model import Camera
-    from seatlook.pbr import Picture
-    from seatlook.wrinkle import Section
+from seatlook.report.page.types import MapView, Profile, Spot, WrinkleSection
+from seatlook.wrinkle import Section, map_top, w2_net
 
 _LABELS = {
     "stretch_along": "Stretch along the grain",
@@ -37,43 +30,6 @@ _LABELS = {
     "shear_deg": "Shear",
     "grain_drift_deg": "Grain drift",
 }
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Profile:
-    """One section as a chart: polylines "x,y x,y ..." of the cover and of the shape that was meant.
-
-    ``exaggeration`` is how many times larger heights are drawn than lengths.
-    """
-
-    name: str
-    cover: str
-    intended: str
-    x_ticks: tuple[Tick, ...]
-    y_ticks: tuple[Tick, ...]
-    exaggeration: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WrinkleSection:
-    """What the page shows of the wrinkles.
-
-    Parameters
-    ----------
-    worst : one row per wrinkle, the worst first; no row where nothing is above the threshold
-    profiles : the section across each
-    distortion : one row per zone; None on a page of several variants
-    maps : W2 net, distortion of the texture, a checker
-    files : tables beside the page
-    spots : where the worst wrinkles are in the pictures
-    """
-
-    worst: Table
-    profiles: tuple[Profile, ...]
-    distortion: Table | None
-    maps: tuple[MapView, ...]
-    files: tuple[str, ...]
-    spots: tuple[Spot, ...] = ()
 
 
 def wrinkle_section(evaluation: Evaluation) -> WrinkleSection:
