@@ -5,7 +5,6 @@ See docs/reference/scene.md.
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -21,10 +20,11 @@ from seatlook.io.pattern.dxf import SMALLEST_NOTCH
 from seatlook.io.pattern.seams import read_pattern
 from seatlook.io.scene.changes import change
 from seatlook.io.scene.checks import check_hem, check_overlap, check_wires
+from seatlook.io.scene.files import SceneFiles
 from seatlook.io.scene.keys import AS_BUILT, KEYS
 from seatlook.io.scene.ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
 from seatlook.io.scene.views import make_cameras, make_rigs
-from seatlook.io.schema import known, read_table, shown
+from seatlook.io.schema import known, read_table
 from seatlook.io.surface import read_surface
 from seatlook.io.texture_maps import map_files
 from seatlook.io.toml import Document, Key, read_document
@@ -65,7 +65,7 @@ def load_scene(path: Path | str, *, changes: Iterable[str] = ()) -> Scene:
     """
     document = read_document(Path(path))
     change(document, changes)
-    return _Reader(document, read_table(document, KEYS)).scene()
+    return _Reader(document, read_table(document, KEYS), SceneFiles(document)).scene()
 
 
 @dataclass(slots=True)
@@ -74,39 +74,19 @@ class _Reader:
 
     document: Document
     row: dict[str, Any]
-    files: dict[Path, bytes] = field(default_factory=dict)
+    files: SceneFiles
     read: dict[Path, Material | None] = field(default_factory=dict)
 
     def scene(self) -> Scene:
+        """Read all parts, raise all that is wrong with them, put them together."""
         row, document = self.row, self.document
-        pattern, foam, design = self.pattern(), self.foam(), self.design()
-        boxes = make_boxes(document, row["zones"]["box"], pattern)
-        parts: dict[str, Any] = {
-            "materials": self.materials(pattern),
-            "textures": self.textures(),
-            "placement": self.placement(pattern),
-            "stages": make_stages(document, row["stage"], pattern),
-            "hooks": make_hooks(document, row, pattern, foam),
-            "frames": make_frames(document, row, pattern, foam),
-            "limits": make_limits(document, row["accept"], pattern, boxes),
-            "rigs": make_rigs(document, row["rig"]),
-            "cameras": make_cameras(document, row["camera"], _centre(foam)),
-        }
-        check_wires(document, row, pattern, foam)
-        check_overlap(document, pattern, parts["placement"])
-        check_hem(document, pattern, row["hem"])
-        with document.blame(("thread",)):
-            parts["thread"] = _thread(row["thread"])
+        parts = self.parts()
         document.finish()
         curvature = row["wrinkle"]["curvature"]
         return Scene(
             name=row["name"] or document.file.stem,
             path=document.file,
-            digest=self.digest(),
-            pattern=cast("Pattern", pattern),
-            foam=cast("Foam", foam),
-            boxes=boxes,
-            design=design,
+            digest=self.files.digest(),
             hem=row["hem"],
             element_size=row["mesh"]["element_size_mm"],
             element_sizes=MappingProxyType(
@@ -119,30 +99,37 @@ class _Reader:
             **parts,
         )
 
-    def digest(self) -> str:
-        """Hash the contents in the order in which the scene names them, not the paths."""
-        contents = [self.document.content, *self.files.values()]
-        parts = (hashlib.sha256(content).digest() for content in contents)
-        return hashlib.sha256(b"".join(parts)).hexdigest()
-
-    def file(self, key: Key, name: str | None) -> Path | None:
-        """Return the path of a file that the scene names, if there is such a file."""
-        if name is None:
-            return None
-        return self.existing(key, name, self.document.file.parent / name)
-
-    def existing(self, key: Key, name: str, path: Path) -> Path | None:
-        if path not in self.files:
-            if not path.is_file():
-                self.document.report(key, shown(name), "a file", f"there is none at {path}")
-                return None
-            self.files[path] = path.read_bytes()
-        return path
+    def parts(self) -> dict[str, Any]:
+        """Parts of the scene that are more than one value, by field."""
+        row, document = self.row, self.document
+        pattern, foam, design = self.pattern(), self.foam(), self.design()
+        boxes = make_boxes(document, row["zones"]["box"], pattern)
+        parts: dict[str, Any] = {
+            "pattern": pattern,
+            "foam": foam,
+            "design": design,
+            "boxes": boxes,
+            "materials": self.materials(pattern),
+            "textures": self.textures(),
+            "placement": self.placement(pattern),
+            "stages": make_stages(document, row["stage"], pattern),
+            "hooks": make_hooks(document, row, pattern, foam),
+            "frames": make_frames(document, row, pattern, foam),
+            "limits": make_limits(document, row["accept"], pattern, boxes),
+            "rigs": make_rigs(document, row["rig"], self.files),
+            "cameras": make_cameras(document, row["camera"], _centre(foam)),
+        }
+        check_wires(document, row, pattern, foam)
+        check_overlap(document, pattern, parts["placement"])
+        check_hem(document, pattern, row["hem"])
+        with document.blame(("thread",)):
+            parts["thread"] = _thread(row["thread"])
+        return parts
 
     def pattern(self) -> Pattern | None:
         row, notch = self.row["pattern"], self.row["mesh"]["smallest_notch_mm"]
-        path = self.file(("pattern", "file"), row["file"])
-        seams = self.file(("pattern", "seams"), row["seams"])
+        path = self.files.find(("pattern", "file"), row["file"])
+        seams = self.files.find(("pattern", "seams"), row["seams"])
         if path is None or seams is None:
             return None
         try:
@@ -168,8 +155,8 @@ class _Reader:
 
     def foam(self) -> Foam | None:
         row = self.row["foam"]
-        path = self.file(("foam", "file"), row["file"])
-        curves = self.file(("foam", "curves"), row["curves"])
+        path = self.files.find(("foam", "file"), row["file"])
+        curves = self.files.find(("foam", "curves"), row["curves"])
         if path is None or row["unit"] is None or row["material"] is None:
             return None
         if row["curves"] is not None and curves is None:
@@ -196,7 +183,7 @@ class _Reader:
 
     def design(self) -> Design | None:
         row = self.row["design"]
-        path = self.file(("design", "file"), row["file"])
+        path = self.files.find(("design", "file"), row["file"])
         if path is None or row["unit"] is None:
             return None
         try:
@@ -213,7 +200,7 @@ class _Reader:
             for p in error.problems:
                 self.document.report(key, p.got, p.expected, p.hint)
             return None
-        return self.existing(key, name, path)
+        return self.files.find(key, name, path)
 
     def material(self, key: Key, name: str) -> Material | None:
         """Read a material once, however many panels have it."""
@@ -227,7 +214,7 @@ class _Reader:
                 maps = material.appearance.maps
                 if maps is not None:
                     for file in map_files(path.parent / maps.folder).values():
-                        self.files[file] = file.read_bytes()
+                        self.files.count(file)
         return self.read[path]
 
     def materials(self, pattern: Pattern | None) -> MappingProxyType[str, Material]:
@@ -237,17 +224,17 @@ class _Reader:
         if pattern is not None:
             for name in self.row["panel"]:
                 known(self.document, ("panel", name), name, names, "a panel of the pattern")
-        found = {}
+        materials = {}
         for name in names:
             key = ("panel", name, "material") if name in own else ("pattern", "material")
-            wanted = own.get(name, default)
-            if wanted is None:
+            chosen = own.get(name, default)
+            if chosen is None:
                 self.document.report(
                     ("panel", name, "material"), "nothing", "a material, here or in [pattern]"
                 )
-            elif (material := self.material(key, wanted)) is not None:
-                found[name] = material
-        return MappingProxyType(found)
+            elif (material := self.material(key, chosen)) is not None:
+                materials[name] = material
+        return MappingProxyType(materials)
 
     def textures(self) -> MappingProxyType[str, Appearance | None]:
         looks: dict[str, Appearance | None] = {}

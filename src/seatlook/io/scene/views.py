@@ -11,6 +11,7 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.io.panorama import read_panorama
+from seatlook.io.scene.files import SceneFiles
 from seatlook.io.schema import MM, Array, Kind, Number, Rows, Table, Text, Texts
 from seatlook.io.toml import Document, Key
 from seatlook.model import LIGHTS, VIEWS, Camera, FloatArray, Light, Rig, named_view
@@ -88,37 +89,33 @@ CAMERA: dict[str, Kind] = {
 }
 
 
-def make_rigs(document: Document, rows: list[dict[str, Any]]) -> tuple[Rig, ...]:
-    """Build the rigs of a scene; a rig of which a light is wrong is left out."""
+def make_rigs(document: Document, rows: list[dict[str, Any]], files: SceneFiles) -> tuple[Rig, ...]:
+    """Build the rigs of a scene; one with a light or sky that is wrong is left out."""
     rigs = []
     for number, row in enumerate(rows):
         lights = [light["light"] for light in row["light"] or ()]
         if row["name"] is None or row["ambient_cd_m2"] is None or None in lights:
             continue
         with document.blame(("rig", number)):
+            sky = _sky(files, number, row)
+            if sky is None and row["panorama"] is not None:
+                continue
             rigs.append(
                 Rig(
                     name=row["name"],
                     lights=tuple(lights),
                     ambient=row["ambient_cd_m2"],
                     ev100=row["ev100"],
-                    panorama=_sky(document, number, row),
+                    panorama=sky,
                 )
             )
     return tuple(rigs)
 
 
-def _sky(document: Document, number: int, row: dict[str, Any]) -> FloatArray | None:
+def _sky(files: SceneFiles, number: int, row: dict[str, Any]) -> FloatArray | None:
     """Panorama [cd/m2] of a rig, beside the scene file; ``panorama_cd_m2`` is what 1 stands for."""
-    if row["panorama"] is None:
-        return None
-    path = document.file.parent / row["panorama"]
-    if not path.is_file():
-        document.report(
-            ("rig", number, "panorama"), row["panorama"], "an .hdr or .exr file that exists"
-        )
-        return None
-    return np.asarray(row["panorama_cd_m2"] * read_panorama(path))
+    path = files.find(("rig", number, "panorama"), row["panorama"])
+    return None if path is None else np.asarray(row["panorama_cd_m2"] * read_panorama(path))
 
 
 def make_cameras(document: Document, row: dict[str, Any], centre: FloatArray) -> tuple[Camera, ...]:
