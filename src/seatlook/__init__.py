@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-__version__ = "0.1.0"
+from seatlook._version import __version__ as __version__
 
 # name -> module; loaded on first use, so that "seatlook --help" stays light.
 _PUBLIC: dict[str, str] = {

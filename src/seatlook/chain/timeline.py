@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from seatlook import __version__, io
+from seatlook import io
+from seatlook._version import __version__
 from seatlook.errors import InputError, did_you_mean
 from seatlook.model import Anchor, Cover, FloatArray, Solution, Stage, Stitching, stage_units
 from seatlook.solver import solve

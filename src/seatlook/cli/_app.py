@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError
 
-from seatlook import __version__
+from seatlook._version import __version__
 from seatlook.cli._output import manner, say
 from seatlook.errors import SeatlookError
 

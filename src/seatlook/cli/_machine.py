@@ -9,7 +9,7 @@ from pathlib import Path
 
 from cyclopts import App
 
-from seatlook import __version__
+from seatlook._version import __version__
 from seatlook.cli._output import Json, note, say, table
 
 materials = App(name="materials", help="List the supplied materials, or show one.")

@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
-from seatlook import __version__, files
+from seatlook import files
+from seatlook._version import __version__
 from seatlook.chain.evaluation import MAPS, label, picture_path
 from seatlook.chain.findings import find
 from seatlook.comparison.compare import Comparison

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from seatlook import __version__
+from seatlook._version import __version__
 from seatlook.chain.evaluation import MAPS, label
 from seatlook.chain.shell_maps import PICTURE, DrawnState
 from seatlook.model.table import Table

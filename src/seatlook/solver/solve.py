@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from seatlook import __version__
+from seatlook._version import __version__
 from seatlook.errors import InputError, SolverError
 from seatlook.model import Cover, FloatArray, Solution, stage_units
 from seatlook.solver.methods.choice import MethodName, method_of

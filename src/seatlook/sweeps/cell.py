@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from seatlook import __version__, files, io
+from seatlook import files, io
+from seatlook._version import __version__
 from seatlook.assembly import assemble
 from seatlook.chain.evaluation import draw_pictures, wrinkle_map
 from seatlook.errors import InputError, did_you_mean

@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from seatlook import __version__
+from seatlook._version import __version__
 from seatlook.assembly.ease import SeamEase, seam_ease
 from seatlook.chain.evaluation import DISTANCES, MAPS, RESULT, Evaluation, label
 from seatlook.model import Light, Rig, Scene, Solution

@@ -1,0 +1,3 @@
+"""The version of seatlook; below everything, so that any module may name it."""
+
+__version__ = "0.1.0"
