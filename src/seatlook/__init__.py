@@ -31,7 +31,7 @@ _PUBLIC: dict[str, str] = {
     "sun": "seatlook.model",
     "surface_strains": "seatlook.wrinkle",
     "wrinkle_indices": "seatlook.wrinkle",
-    "write_report": "seatlook.report.page.gather",
+    "write_report": "seatlook.report.evaluation_page",
     "write_result": "seatlook.io",
     "zone_table": "seatlook.wrinkle",
 }

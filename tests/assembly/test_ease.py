@@ -10,7 +10,7 @@ from seatlook import model
 from seatlook.assembly import assemble
 from seatlook.assembly.ease import seam_ease
 from seatlook.io import read_pattern
-from seatlook.report.page.gather import seam_table
+from seatlook.report.evaluation_page import seam_table
 from support import scenes
 
 DATA = Path(__file__).parents[1] / "data"

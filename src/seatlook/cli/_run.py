@@ -172,7 +172,7 @@ def evaluate_scene(
     """Evaluate a scene, print its zones and return the exit code."""
     from seatlook.chain.evaluation import evaluate as run_chain
     from seatlook.model.scene import SCORE_MEASURES
-    from seatlook.report.page.gather import write_report
+    from seatlook.report.evaluation_page import write_report
     from seatlook.report.sections.score import visibility
 
     score = score or any(limit.measure in SCORE_MEASURES for limit in scene.limits)

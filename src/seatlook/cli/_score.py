@@ -112,7 +112,7 @@ def _searches(
     """Search the worst sun and the worst bulb of every texture, and draw their charts."""
     from dataclasses import replace
 
-    from seatlook.report.page.light_chart import write_light_chart
+    from seatlook.report.light_chart import write_light_chart
     from seatlook.visibility.light_search import bulb_rig, search_light, sun_rig
     from seatlook.visibility.view import View
 

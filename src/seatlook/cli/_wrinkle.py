@@ -285,7 +285,7 @@ def _draw_shells(
     """Draw the states, each into a folder of its own; export the last of them."""
     from seatlook import io
     from seatlook.chain.shell_maps import draw_state, on_faces
-    from seatlook.report.shells import write_shell_page
+    from seatlook.report.shell_page import write_shell_page
     from seatlook.shells.cover import shell_cover
 
     look = io.read_material(material)

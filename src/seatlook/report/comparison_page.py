@@ -16,11 +16,11 @@ from seatlook.comparison.visibility import VariantScores
 from seatlook.model.progress import Progress
 from seatlook.model.table import Table, number
 from seatlook.report.page.data import PageData
-from seatlook.report.page.gather import rig_head
-from seatlook.report.page.in_short import above_one
-from seatlook.report.page.parameters import parameter_tables, parameter_toml
 from seatlook.report.page.types import Check, MapView, ScoreSection, Spot, WrinkleSection
 from seatlook.report.page.write import write_page
+from seatlook.report.sections.in_short import above_one
+from seatlook.report.sections.parameters import parameter_tables, parameter_toml
+from seatlook.report.sections.rigs import rig_head
 from seatlook.report.sections.wrinkles import section_of
 
 _TABLES = {

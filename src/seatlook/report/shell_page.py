@@ -12,9 +12,9 @@ from seatlook.chain.evaluation import MAPS, label
 from seatlook.chain.shell_maps import PICTURE, DrawnState
 from seatlook.model.table import Table
 from seatlook.report.page.data import PageData
-from seatlook.report.page.gather import rig_head
 from seatlook.report.page.types import MapView
 from seatlook.report.page.write import write_page
+from seatlook.report.sections.rigs import rig_head
 from seatlook.report.sections.wrinkles import distortion_views, section_of
 
 # key of a part's figures -> head of its column

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from seatlook import io
-from seatlook.report.page.parameters import parameter_toml
+from seatlook.report.sections.parameters import parameter_toml
 from support.scene_files import write_two_panels
 
 

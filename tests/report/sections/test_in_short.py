@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from seatlook.report import Check
-from seatlook.report.page.in_short import above_one, missed, seen, wrinkled
+from seatlook.report.sections.in_short import above_one, missed, seen, wrinkled
 from seatlook.wrinkle import ZoneRow
 
 

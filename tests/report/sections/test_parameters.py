@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook.model import Appearance, Curve, TextureMaps
-from seatlook.report.page.parameters import parameter_tables, parameter_toml
+from seatlook.report.sections.parameters import parameter_tables, parameter_toml
 from support import scenes
 
 

@@ -14,16 +14,17 @@ import numpy as np
 from seatlook._version import __version__
 from seatlook.assembly.ease import SeamEase, seam_ease
 from seatlook.chain.evaluation import DISTANCES, MAPS, RESULT, Evaluation, label
-from seatlook.model import Light, Rig, Scene, Solution
+from seatlook.model import Scene, Solution
 from seatlook.model.table import Table, number
-from seatlook.pbr import ev100, lux_at_seat, offscreen_backend, render_map
-from seatlook.report.page.data import PageData, RigHead
-from seatlook.report.page.in_short import missed, seen, wrinkled
-from seatlook.report.page.parameters import parameter_tables, parameter_toml
+from seatlook.pbr import offscreen_backend, render_map
+from seatlook.report.page.data import PageData
 from seatlook.report.page.types import Check, MapView, ScoreSection
 from seatlook.report.page.write import write_page
 from seatlook.report.sections.design import FILES, design_section, distance_table
+from seatlook.report.sections.in_short import missed, seen, wrinkled
 from seatlook.report.sections.making import making_section
+from seatlook.report.sections.parameters import parameter_tables, parameter_toml
+from seatlook.report.sections.rigs import rig_head
 from seatlook.report.sections.wrinkles import wrinkle_section
 from seatlook.results.gap import zone_gaps
 from seatlook.solver import foam_wavelength
@@ -116,33 +117,6 @@ def page_data(evaluation: Evaluation) -> PageData:
         ),
         files=(RESULT, "zones.csv", *(FILES if scene.design else ()), *wrinkles.files),
     )
-
-
-def rig_head(rig: Rig) -> RigHead:
-    """Describe a rig by its exposure, lux at the seat and lights."""
-    lights = [_described(light) for light in rig.lights]
-    if rig.ambient > 0:
-        lights.append(f"sky, {number(rig.ambient)} cd/m2")
-    return RigHead(
-        name=rig.name,
-        ev100=ev100(rig),
-        illuminance=lux_at_seat(rig)["total"],
-        lights=tuple(lights),
-        places=tuple((light.name, *_seen_at(light), light.near) for light in rig.lights),
-    )
-
-
-def _seen_at(light: Light) -> tuple[float, float]:
-    """Azimuth and elevation [deg] of a light from the seat, which lies about the origin."""
-    x, y, z = light.vector / np.linalg.norm(light.vector)
-    return float(np.degrees(np.arctan2(x, -y)) % 360), float(np.degrees(np.arcsin(z)))
-
-
-def _described(light: Light) -> str:
-    if light.near:
-        x, y, z = (number(round(1e3 * v)) for v in light.vector)
-        return f"{light.name}, {number(light.intensity)} cd at ({x}, {y}, {z}) mm"
-    return f"{light.name}, {number(light.intensity)} lx facing"
 
 
 def _maps(evaluation: Evaluation) -> Iterator[MapView]:
