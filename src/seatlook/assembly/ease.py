@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatlook.mesh import arc_length
+from seatlook.mesh import nearest_place
 from seatlook.model import FloatArray, Pattern, Seam
 
 # Notches are drawn on the cut line as often as on the sew line.
@@ -102,18 +102,8 @@ def notches_on(pattern: Pattern, name: str) -> FloatArray:
     mine = [e.name for e in pattern.edges.values() if e.panel == panel.name]
     found = []
     for notch in panel.notches:
-        places = {edge: _nearest(pattern.edge_points(edge), notch.position) for edge in mine}
+        places = {edge: nearest_place(pattern.edge_points(edge), notch.position) for edge in mine}
         distance, at = places[name]
         if distance < _WIDEST_ALLOWANCE and distance <= min(d for d, _ in places.values()):
             found.append(at)
     return np.array(found)
-
-
-def _nearest(line: FloatArray, point: FloatArray) -> tuple[float, float]:
-    """Distance of a point from a polyline and the arc length of the place there [m]."""
-    step = np.diff(line, axis=0)
-    length = np.hypot(*step.T)
-    along = np.clip(((point - line[:-1]) * step).sum(axis=1) / length**2, 0.0, 1.0)
-    distance = np.hypot(*(point - line[:-1] - along[:, None] * step).T)
-    k = int(distance.argmin())
-    return float(distance[k]), float(arc_length(line)[k] + along[k] * length[k])

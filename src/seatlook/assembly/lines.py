@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from seatlook import mesh
 from seatlook.model import Anchor, FloatArray, Hook, IntArray, Points
 
 _ON_LINE = 1e-6  # m; a vertex that near an end of the hooked part belongs to it
@@ -42,8 +43,7 @@ class Line:
 
 def line_through(points: FloatArray, vertices: IntArray, offset: int) -> Line:
     """Return the line through mesh vertices, whose numbers start at ``offset``."""
-    steps = np.linalg.norm(np.diff(points[vertices], axis=0), axis=1)
-    return Line(vertices + offset, np.concatenate([[0.0], np.cumsum(steps)]))
+    return Line(vertices + offset, mesh.arc_length(points[vertices]))
 
 
 def stitches(share: float, total: float, pitch: float) -> tuple[FloatArray, FloatArray]:
@@ -65,8 +65,7 @@ def join(parts: Sequence[Points]) -> Points:
 
 def curve_of(points: FloatArray) -> Callable[[FloatArray], FloatArray]:
     """Return the curve as a function of the share of its length in [0, 1]."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    arc = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+    arc = mesh.arc_length(points) / mesh.segment_lengths(points).sum()
     return lambda s: np.column_stack([np.interp(s, arc, points[:, k]) for k in range(3)])
 
 

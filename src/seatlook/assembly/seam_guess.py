@@ -15,6 +15,7 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook.assembly.ease import notches_on
+from seatlook.mesh import arc_length
 from seatlook.model import Edge, FloatArray, Panel, Pattern, Seam
 
 LONGEST_EASE = 0.03  # of one edge on one edge
@@ -250,8 +251,7 @@ def _edges(panels: Sequence[Panel]) -> MappingProxyType[str, Edge]:
 def _stops(panel: Panel) -> list[int]:
     """Corners that are no closer than a cut is wide."""
     outline = panel.outline
-    step = np.hypot(*(np.roll(outline, -1, axis=0) - outline).T)
-    arc = np.concatenate([[0.0], np.cumsum(step)])
+    arc = arc_length(np.concatenate([outline, outline[:1]]))
     stops: list[int] = []
     for k in sorted(int(c) for c in panel.corners):
         if not stops or arc[k] - arc[stops[-1]] >= _SHORTEST:

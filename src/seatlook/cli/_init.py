@@ -196,6 +196,8 @@ def _hooks(
     """Wire -> the seam that lies nearest over it and is not longer than it."""
     import numpy as np
 
+    from seatlook import mesh
+
     lines = {}
     for seam in pattern.seams:
         pose = layout.poses[pattern.edges[seam.a].panel]
@@ -203,7 +205,7 @@ def _hooks(
         lines[seam.name] = line.mean(axis=0), pattern.edge_length(seam.a)
     hooks: dict[str, str] = {}
     for wire, points in curves.items():
-        length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+        length = mesh.length(points)
         middle = points.mean(axis=0)
         near = {
             name: float(np.linalg.norm(at - middle))

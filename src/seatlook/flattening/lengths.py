@@ -11,6 +11,7 @@ from seatlook.errors import SeatlookError
 from seatlook.flattening.pattern import pair
 from seatlook.flattening.relax import HeldEdges, flatten_patch
 from seatlook.flattening.surface import Patch, Side
+from seatlook.mesh import segment_lengths
 from seatlook.model import Fabric, FloatArray
 
 # [m] over which the stretch beside an eased sewing line fades out. A linear fade over a strip is
@@ -33,7 +34,9 @@ def agreed_ratios(
     for side in borders:
         patch = by_name[side.panel]
         at = side.indices(patch)
-        wish[side.name] = _steps(alone[side.panel][at]) / _steps(patch.vertices[at])
+        wish[side.name] = segment_lengths(alone[side.panel][at]) / segment_lengths(
+            patch.vertices[at]
+        )
     agreed: dict[str, FloatArray] = {}
     for seam in pair(borders):
         b = seam.b[0]
@@ -60,7 +63,9 @@ def relaxed(
     x = flatten_patch(patch.vertices, patch.faces, held, start=alone, fabric=fabric)
     if not eased:
         return x
-    agreed = np.array([_steps(patch.vertices[s.indices(patch)]) @ ratio[s.name] for s in eased])
+    agreed = np.array(
+        [segment_lengths(patch.vertices[s.indices(patch)]) @ ratio[s.name] for s in eased]
+    )
     wanted = agreed * [1 + ease[s.name] for s in eased]
     amount, slope = np.zeros(len(eased)), agreed
     found = _lengths(patch, x, eased)
@@ -80,7 +85,9 @@ def _held(patch: Patch, own: Sequence[Side], ratio: Mapping[str, FloatArray]) ->
     """Return the segments of some sides with their lengths on the surface times a ratio."""
     at = [side.indices(patch) for side in own]
     pairs = [np.column_stack([i[:-1], i[1:]]) for i in at]
-    length = [_steps(patch.vertices[i]) * ratio[s.name] for i, s in zip(at, own, strict=True)]
+    length = [
+        segment_lengths(patch.vertices[i]) * ratio[s.name] for i, s in zip(at, own, strict=True)
+    ]
     return HeldEdges(
         vertices=np.concatenate([np.zeros((0, 2), np.int64), *pairs]),
         length=np.concatenate([np.zeros(0), *length]),
@@ -88,7 +95,7 @@ def _held(patch: Patch, own: Sequence[Side], ratio: Mapping[str, FloatArray]) ->
 
 
 def _lengths(patch: Patch, x: FloatArray, own: Sequence[Side]) -> FloatArray:
-    return np.array([_steps(x[side.indices(patch)]).sum() for side in own])
+    return np.array([segment_lengths(x[side.indices(patch)]).sum() for side in own])
 
 
 def _growth(patch: Patch, eased: Sequence[Side], amount: FloatArray) -> FloatArray:
@@ -104,7 +111,3 @@ def _growth(patch: Patch, eased: Sequence[Side], amount: FloatArray) -> FloatArr
         tangent = along[nearest]
         growth += (fraction * share)[:, None, None] * np.einsum("mi,mj->mij", tangent, tangent)
     return growth
-
-
-def _steps(polyline: FloatArray) -> FloatArray:
-    return np.asarray(np.linalg.norm(np.diff(polyline, axis=0), axis=1))

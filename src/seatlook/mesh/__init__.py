@@ -7,7 +7,7 @@ from seatlook.mesh.outline import (
     QUANTILE_ANGLE_DEG,
     triangulate,
 )
-from seatlook.mesh.polyline import arc_length, resample
+from seatlook.mesh.polyline import arc_length, length, nearest_place, resample, segment_lengths
 from seatlook.mesh.surface import (
     angles,
     boundary_loops,
@@ -36,7 +36,10 @@ __all__ = [
     "face_vectors",
     "hexagonal_bias",
     "intersecting_pairs",
+    "length",
+    "nearest_place",
     "resample",
+    "segment_lengths",
     "triangulate",
     "vertex_normals",
 ]

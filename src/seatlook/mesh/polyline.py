@@ -1,6 +1,8 @@
-"""Open polylines as arrays: lengths along them, distances to them."""
+"""Open polylines as arrays: lengths along them, places on them, distances to them."""
 
 from __future__ import annotations
+
+from functools import reduce
 
 import numpy as np
 import numpy.typing as npt
@@ -26,10 +28,43 @@ def distance_to_polyline(points: FloatArray, line: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt((gap**2).sum(axis=2)).min(axis=1))
 
 
+def nearest_place(line: FloatArray, point: FloatArray) -> tuple[float, float]:
+    """Distance of a point (2,) from a polyline (k, 2), and the arc length of the place there [m].
+
+    Examples
+    --------
+    >>> nearest_place(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), np.array([1.5, 0.5]))
+    (0.5, 1.5)
+    """
+    step = np.diff(line, axis=0)
+    size = np.hypot(*step.T)
+    along = np.clip(((point - line[:-1]) * step).sum(axis=1) / size**2, 0.0, 1.0)
+    distance = np.hypot(*(point - line[:-1] - along[:, None] * step).T)
+    k = int(distance.argmin())
+    return float(distance[k]), float(arc_length(line)[k] + along[k] * size[k])
+
+
+def segment_lengths(polyline: FloatArray) -> FloatArray:
+    """Return the length (k - 1,) [m] of each segment of an open polyline (k, d)."""
+    return np.asarray(np.linalg.norm(np.diff(polyline, axis=0), axis=1))
+
+
 def arc_length(polyline: FloatArray) -> FloatArray:
     """Return the length run through (k,) [m] at each point of an open polyline (k, d)."""
-    steps = np.linalg.norm(np.diff(polyline, axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    return np.concatenate([[0.0], np.cumsum(segment_lengths(polyline))])
+
+
+def length(polyline: FloatArray) -> float:
+    """Return the whole length [m] of an open polyline (k, d).
+
+    It is summed in pairs, so that its last bits are not those of ``arc_length``.
+
+    Examples
+    --------
+    >>> length(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 5.0]]))
+    6.0
+    """
+    return float(reduce(np.hypot, np.diff(polyline, axis=0).T).sum())
 
 
 def resample(polyline: FloatArray, spacing: float) -> FloatArray:

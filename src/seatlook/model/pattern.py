@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from seatlook.mesh.polyline import length
 from seatlook.model._check import FloatArray, IntArray, floats, ints, positive
 
 NotchKind = Literal["point", "v", "t", "castle", "u", "check"]
@@ -132,5 +133,4 @@ class Pattern:
 
     def edge_length(self, name: str) -> float:
         """Return the length [m] of the edge called ``name``."""
-        steps = np.diff(self.edge_points(name), axis=0)
-        return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
+        return length(self.edge_points(name))

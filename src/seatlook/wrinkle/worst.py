@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from seatlook import mesh
 from seatlook.model import Cover, FloatArray, IntArray, Points, Solution, Stitching, WrinkleMap
 from seatlook.wrinkle.section import Section, section
 
@@ -215,7 +216,7 @@ def _sewn_lengths(cover: Cover, stitching: Stitching) -> tuple[float, float]:
     panel = np.zeros(len(cover.rest), dtype=np.int64)
     panel[cover.faces] = cover.panel[:, None]
     sides = (stitching.a, stitching.b)
-    steps = [np.linalg.norm(np.diff(s.at(cover.rest), axis=0), axis=1) for s in sides]
+    steps = [mesh.segment_lengths(s.at(cover.rest)) for s in sides]
     owners = [panel[s.vertices[:, 0]] for s in sides]
     within = np.logical_and.reduce([np.diff(o) == 0 for o in owners])
     return float(steps[0][within].sum()), float(steps[1][within].sum())

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatlook.mesh import arc_length
 from seatlook.model import FloatArray, Notch
 from seatlook.model.pattern import NotchKind
 
@@ -82,7 +83,7 @@ def _find(points: FloatArray, below: float) -> list[Cut]:
     # A mouth turns inward, which is left: first into the cut, then out of it along the outline.
     turns = np.flatnonzero(left > 0.5 * _TURN_DEG)
     turns = np.concatenate([turns, turns + n])
-    way = np.concatenate([[0.0], np.cumsum(np.tile(np.hypot(*ahead.T), 2))])
+    way = arc_length(np.concatenate([points, points, points[:1]]))
     cuts: list[Cut] = []
     done = 0
     for first in turns[turns < n]:

@@ -11,6 +11,7 @@ import shapely
 import trimesh.triangles
 from scipy.spatial import cKDTree
 
+from seatlook import mesh
 from seatlook.io.toml import Document
 from seatlook.model import FloatArray, Foam, Pattern, Pose
 
@@ -37,7 +38,7 @@ def check_wires(
         if wire is None:
             continue
         key = ("hook", number, "wire")
-        length, line = _length(wire), line_length(hook["line"], pattern)
+        length, line = mesh.length(wire), line_length(hook["line"], pattern)
         if line is not None and line > LONGEST_LINE * length:
             document.report(
                 ("hook", number, "line"),
@@ -116,18 +117,13 @@ def line_length(line: str | None, pattern: Pattern | None) -> float | None:
     panel, _, name = line.partition("/")
     for p in pattern.panels:
         if p.name == panel and name in p.internal_lines:
-            return _length(p.internal_lines[name])
+            return mesh.length(p.internal_lines[name])
     return None
-
-
-def _length(points: FloatArray) -> float:
-    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
 def _depth(curve: FloatArray, foam: Foam) -> float:
     """Largest depth of a curve below the surface of the foam [m], 0 outside."""
-    steps = np.linalg.norm(np.diff(curve, axis=0), axis=1)
-    arc = np.concatenate([[0.0], np.cumsum(steps)])
+    arc = mesh.arc_length(curve)
     at = np.linspace(0.0, arc[-1], max(2, int(np.ceil(arc[-1] / _SPACING)) + 1))
     points = np.column_stack([np.interp(at, arc, column) for column in curve.T])
     # Vertices lie on the surface: a point near one is not deep, and few points are left.
