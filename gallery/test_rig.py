@@ -39,7 +39,7 @@ BACK = {
 Row = tuple[str, float, float, float]  # test, abscissa, input, solver
 
 
-def law(curve: Curve, strain: float) -> float:
+def tension_at(curve: Curve, strain: float) -> float:
     """Tension [N/m] (second Piola-Kirchhoff) of a curve at a Green strain."""
     fine = np.linspace(0.0, strain, 2001)
     return float(np.trapezoid(np.interp(fine, curve.strain, curve.stiffness), fine))
@@ -50,7 +50,7 @@ def strain_at(curve: Curve, tension: float) -> float:
     low, high = 0.0, 1.0
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if law(curve, middle) < tension else (low, middle)
+        low, high = (middle, high) if tension_at(curve, middle) < tension else (low, middle)
     return low
 
 
@@ -72,7 +72,7 @@ def tension(axis: int) -> list[Row]:
     name = ("warp", "weft")[axis]
     out, back = getattr(fabric, name), getattr(fabric, f"{name}_unloading")
     x, peaks, peak = None, None, 0.5 * (1.08**2 - 1.0)
-    start = strain_at(back, law(out, peak))
+    start = strain_at(back, tension_at(out, peak))
     for stretch in (*np.linspace(1.01, 1.08, 8), *np.linspace(1.074, 1.05, 5)):
         target = flat.copy()
         target[:, axis] *= stretch
@@ -82,7 +82,7 @@ def tension(axis: int) -> list[Row]:
         x, peaks = solved.positions, solved.peaks
         force = solved.reactions[high, axis].sum()
         E = 0.5 * (stretch**2 - 1.0)
-        given = law(back, E - peak + start) if came_back else law(out, E)
+        given = tension_at(back, E - peak + start) if came_back else tension_at(out, E)
         rows.append((f"strip tension, {name}", E, given, force / stretch))
     return rows
 
@@ -102,7 +102,7 @@ def picture_frame() -> list[Row]:
                              strict=True)  # fmt: skip
         shear = np.sin(angle)
         stress = float(solved.sheet.membrane.stress(solved.positions)[:, 2].mean())
-        rows.append(("picture frame", shear, law(fabric.shear, shear), stress))
+        rows.append(("picture frame", shear, tension_at(fabric.shear, shear), stress))
     return rows
 
 
@@ -131,10 +131,10 @@ def bias_extension() -> list[Row]:
 
 
 def bias_force(fabric: Fabric, a: float, b: float) -> float:
-    """Force per width of a bias strip stretched by ``a`` and contracted to ``b``, by the law."""
+    """Force per width of a bias strip stretched by ``a`` and contracted to ``b``, by the curves."""
     E = 0.25 * (a * a + b * b) - 0.5
-    normal = 0.5 * (law(fabric.warp, E) + law(fabric.weft, E))
-    return a * (normal + law(fabric.shear, 0.5 * (a * a - b * b)))
+    normal = 0.5 * (tension_at(fabric.warp, E) + tension_at(fabric.weft, E))
+    return a * (normal + tension_at(fabric.shear, 0.5 * (a * a - b * b)))
 
 
 def uniform_bias(fabric: Fabric, a: float) -> tuple[float, float]:
@@ -144,13 +144,15 @@ def uniform_bias(fabric: Fabric, a: float) -> tuple[float, float]:
         b = 0.5 * (low + high)
         E = 0.25 * (a * a + b * b) - 0.5
         normal = 0.5 * (slack(fabric.warp, E) + slack(fabric.weft, E))
-        low, high = (low, b) if normal > law(fabric.shear, 0.5 * (a * a - b * b)) else (b, high)
+        low, high = (
+            (low, b) if normal > tension_at(fabric.shear, 0.5 * (a * a - b * b)) else (b, high)
+        )
     return a, b
 
 
 def slack(curve: Curve, strain: float) -> float:
     """Tension of a curve that answers compression with its first stiffness."""
-    return law(curve, strain) if strain > 0.0 else float(curve.stiffness[0]) * strain
+    return tension_at(curve, strain) if strain > 0.0 else float(curve.stiffness[0]) * strain
 
 
 def plain(**change: object) -> Fabric:

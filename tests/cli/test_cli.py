@@ -218,8 +218,8 @@ def test_stages_are_kept_and_gone_on_from(demo_scene, tmp_path, capsys):
     code = run([*words, str(tmp_path / "a.npz"), "--stages"])
     folder = tmp_path / "a.stages"
     kept = sorted(p.name for p in folder.glob("*.npz"))
-    assert kept == ["1-sew.npz", "2-hook-and-cover.npz", "3-settle.npz"]
-    assert "stage: sew\nstage: hook and cover\nstage: settle\n" in capsys.readouterr().err
+    assert kept == ["1-sew.npz", "2-hook-and-cover.npz", "3-rest.npz"]
+    assert "stage: sew\nstage: hook and cover\nstage: rest\n" in capsys.readouterr().err
     whole = io.read_result(tmp_path / "a.npz")
     for option in (["--from", "hook and cover"], ["--resume"]):
         assert run([*words, str(tmp_path / "a.npz"), *option]) == code
@@ -227,8 +227,8 @@ def test_stages_are_kept_and_gone_on_from(demo_scene, tmp_path, capsys):
         again = io.read_result(tmp_path / "a.npz")
         assert again.positions.tobytes() == whole.positions.tobytes()
         assert again.figures["steps"] == whole.figures["steps"]
-    assert run([*words, str(tmp_path / "a.npz"), "--from", "setle"]) == 2
-    assert "(did you mean 'settle'?)" in capsys.readouterr().err
+    assert run([*words, str(tmp_path / "a.npz"), "--from", "rset"]) == 2
+    assert "(did you mean 'rest'?)" in capsys.readouterr().err
 
 
 def test_flatten_eases_one_side_of_a_seam(demo_scene, tmp_path):

@@ -84,11 +84,11 @@ def test_start_does_not_change_the_result():
 
 
 def test_a_closed_dome_is_refused():
-    """Most of a sphere cannot be flattened: it folds or does not settle, and says so."""
+    """Most of a sphere cannot be flattened: it folds or does not converge, and says so."""
     angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     points, faces = mesh.triangulate(np.column_stack([np.cos(angle), np.sin(angle)]), 0.15)
     r = np.linalg.norm(points, axis=1) * 0.97 * np.pi
     direction = points / np.maximum(np.linalg.norm(points, axis=1), 1e-12)[:, None]
     ball = 0.1 * np.column_stack([np.sin(r)[:, None] * direction, np.cos(r)])
-    with pytest.raises(SeatlookError, match=r"flattening (folds \d+ faces|does not settle)"):
+    with pytest.raises(SeatlookError, match=r"flattening (folds \d+ faces|does not converge)"):
         flatten_patch(ball, faces)

@@ -45,7 +45,7 @@ def _grid(nx, ny, kind):
 
 
 def _jittered(length, width, h, seed):
-    """Delaunay mesh of a jittered triangular lattice, relaxed a little, edges kept straight."""
+    """Delaunay mesh of a jittered triangular lattice, smoothed a little, edges kept straight."""
     rng = np.random.default_rng(seed)
     nx, ny = max(1, round(length / h)), max(1, round(width / h))
     rim = [np.stack([np.linspace(0, length, nx + 1), np.full(nx + 1, y)], 1) for y in (0, width)]

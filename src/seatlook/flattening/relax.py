@@ -14,7 +14,7 @@ from seatlook.mesh import face_areas, face_normals
 from seatlook.model import Fabric, FloatArray, IntArray
 
 _MAX_STEPS = 100
-_SETTLED = 1e-7  # [m]; near the end steps shrink by 7 % at worst, so 2e-6 m are left
+_CONVERGED = 1e-7  # [m]; near the end steps shrink by 7 % at worst, so 2e-6 m are left
 # Weight of a held edge length against the faces beside it: 1e4 holds lengths to about 1e-6.
 _HOLD = 1e4
 
@@ -54,7 +54,7 @@ def flatten_patch(
     Raises
     ------
     SeatlookError
-        The steps do not settle, or the flat patch folds over.
+        The steps do not converge, or the flat patch folds over.
     """
     held = held or HeldEdges(vertices=np.zeros((0, 2), np.int64), length=np.zeros(0))
     gradient = _gradient(vertices, faces)
@@ -77,11 +77,11 @@ def flatten_patch(
                 break
             scale /= 2
         x = trial
-        settled = scale * np.abs(step).max() < _SETTLED
+        converged = scale * np.abs(step).max() < _CONVERGED
         value = new
-        if settled:
+        if converged:
             return _unfolded(x, gradient)
-    raise SeatlookError(f"flattening does not settle in {_MAX_STEPS} steps")
+    raise SeatlookError(f"flattening does not converge in {_MAX_STEPS} steps")
 
 
 def conformal_map(vertices: FloatArray, faces: IntArray) -> FloatArray:

@@ -85,7 +85,7 @@ def triangulate(
     for attempt in range(_ATTEMPTS):
         rng = np.random.default_rng((seed, attempt))
         free = _scatter(region, fixed, segments, _LATTICE * element_size, rng)
-        points, faces = _relax(region, fixed, segments, free, element_size)
+        points, faces = _smoothed(region, fixed, segments, free, element_size)
         problems = _misses(points, faces, segments, len(fixed))
         if not problems:
             return points, faces
@@ -163,7 +163,7 @@ def _thin(free: FloatArray, clearance: float) -> FloatArray:
     return free[keep]
 
 
-def _relax(
+def _smoothed(
     region: shapely.Polygon, fixed: FloatArray, segments: IntArray, free: FloatArray, h: float
 ) -> tuple[FloatArray, IntArray]:
     """Smooth, then repair the small angles that are left; Delaunay all along."""

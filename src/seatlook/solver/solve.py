@@ -1,4 +1,4 @@
-"""Sew, hook, cover, settle: from the placed panels to the cover at rest on its foam."""
+"""Sew, hook, cover, come to rest: from the placed panels to the cover at rest on its foam."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from seatlook.solver.process.stages import Step, check_stages, schedule
 from seatlook.solver.process.verdict import figures, reasons, unrest
 
 _REST = "at rest"
-_ROUNDS = 40  # of settling, each with the inertia of a time step twice as long
+_ROUNDS = 40  # of the way to rest, each with the inertia of a time step twice as long
 _LONGER = 10.0  # than a time step, the first of them
 _REST_ITERATIONS = 300  # of one round
 _MOST_ITERATIONS = 10_000  # of all rounds
@@ -115,8 +115,8 @@ def solve(
             shape(step.stage, step.time, process.x)
         last = i + 1 == len(ahead) or ahead[i + 1].stage != step.stage
         if last and snapshot is not None:
-            snapshot(run.solution(step.stage, ["settling has not been done"]))
-    why = run.settle()
+            snapshot(run.solution(step.stage, ["not yet brought to rest"]))
+    why = run.come_to_rest()
     solution = run.solution(_REST, [*reasons(process, run.records[-1]), *why])
     if strict and solution.status != "converged":
         raise ConvergenceError(solution.reason, solution)
@@ -148,7 +148,7 @@ class _Run:
                 gap=record.seam_gap,
             )
 
-    def settle(self) -> list[str]:
+    def come_to_rest(self) -> list[str]:
         """Come to rest; leave balances that are unstable, or say so."""
         self.process.begin(rest=True)
         kick = _KICK * float(self.process.cover.thickness.max())
@@ -163,7 +163,7 @@ class _Run:
         record, spent, dt = process.record(), 0, _LONGER * process.dt
         for _ in range(_ROUNDS):
             left = min(_REST_ITERATIONS, _MOST_ITERATIONS - spent)
-            record = process.settle(dt, record, left)
+            record = process.approach_rest(dt, record, left)
             self.add(_REST, record)
             spent += record.iterations
             dt *= 2.0

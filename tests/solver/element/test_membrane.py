@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from seatlook.errors import InputError
 from seatlook.model import Curve, Fabric
-from seatlook.solver.element.constitutive import law_tables
+from seatlook.solver.element.constitutive import constitutive_tables
 from seatlook.solver.element.elastic import ElasticSheet
 from seatlook.solver.kernels import membrane as kernels
 from support import fabrics, meshes, naive
@@ -137,7 +137,7 @@ def test_kernel_equals_its_twin():
 @pytest.mark.parametrize("e", [-0.1, -2e-3, -1e-3, 0.0, 0.01, 0.02, 0.03, 0.05, 0.2])
 def test_curve_is_the_integral_of_its_stiffness(e):
     fabric = fabrics.woven()
-    tables, counts = law_tables([fabric])
+    tables, counts = constitutive_tables([fabric])
     psi, stress, stiffness = kernels.curve(tables, counts, 0, 0, e)
     strain = [-2e-3, *fabric.warp.strain]
     k = [0.1 * fabric.warp.stiffness[0], *fabric.warp.stiffness]
@@ -153,16 +153,18 @@ strains = st.floats(-0.08, 0.08)
 @settings(deadline=None, max_examples=60)
 @given(strains, strains, strains)
 def test_law_is_smooth_and_convex(a, b, c):
-    tables, counts = law_tables([fabrics.woven()])
+    tables, counts = constitutive_tables([fabrics.woven()])
     args = tables, counts, np.array([[0.3 * 700.0, 0.1]]), 0
-    psi, *stress = kernels.law(*args, a, b, c)
+    psi, *stress = kernels.constitutive(*args, a, b, c)
     assert psi >= -1e-15
     e = 1e-7
     for axis in range(3):
         up, down = np.array([a, b, c]), np.array([a, b, c])
         up[axis] += e
         down[axis] -= e
-        slope = (kernels.law(*args, *up)[0] - kernels.law(*args, *down)[0]) / (2 * e)
+        slope = (kernels.constitutive(*args, *up)[0] - kernels.constitutive(*args, *down)[0]) / (
+            2 * e
+        )
         assert slope == pytest.approx(stress[axis], abs=2e-3)
     d1, d2, d12, d3 = kernels.tangent(*args, a, b, c)
     assert min(d1, d2, d3) > 0.0
@@ -183,8 +185,8 @@ def test_linear_fabric_is_linear_orthotropic(a, b, c):
         bending_weft=1e-5,
         bending_twist=1e-5,
     )
-    tables, counts = law_tables([fabric])
-    psi, *stress = kernels.law(tables, counts, np.array([[800.0, 1.0]]), 0, a, b, c)
+    tables, counts = constitutive_tables([fabric])
+    psi, *stress = kernels.constitutive(tables, counts, np.array([[800.0, 1.0]]), 0, a, b, c)
     E = np.array([a, b, c])
     expected = fabric.membrane_matrix @ E
     np.testing.assert_allclose(stress, expected, atol=1e-10)
@@ -207,7 +209,7 @@ def test_curves_that_soften_under_a_strong_coupling_are_refused():
     with pytest.raises(
         InputError, match=r"Fabric.poisson: got coupling 500 N/m, expected below 100"
     ):
-        law_tables([fabric])
+        constitutive_tables([fabric])
 
 
 def test_stiffness_reproduces_the_stretch_of_a_uniform_field():

@@ -104,7 +104,7 @@ def test_definite_hessian_is():
 
 
 def test_a_shape_seen_before_answers_as_one_seen_first():
-    """Vertices move one by one, or only settle: what was looked up before must not stay."""
+    """Vertices move one by one, or only the foam settles: earlier distances must not stay."""
     n = 60
     rng = np.random.default_rng(4)
     state = np.zeros((n + n // 3, 3))

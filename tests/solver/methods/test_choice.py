@@ -7,7 +7,7 @@ from seatlook import model
 from seatlook.errors import InputError
 from seatlook.solver import Explicit, solve, solve_sheet
 from seatlook.solver.methods.explicit import (
-    DynamicRelaxation,
+    DampedDynamics,
     UnstableStepError,
     advance,
     least_mass,
@@ -152,5 +152,5 @@ def test_cover_above_the_explicit_time_step_is_raised():
 
 def test_relaxation_refuses_to_add_mass_that_was_given():
     mass = np.full((3, 3), 1.0)
-    fixed = DynamicRelaxation((3, 3), Explicit(time_step=0.1), mass)
+    fixed = DampedDynamics((3, 3), Explicit(time_step=0.1), mass)
     assert fixed._masses(None, np.zeros((3, 3))) is mass

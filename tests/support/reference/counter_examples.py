@@ -35,7 +35,7 @@ class LinearMembrane:
 
     def __init__(self, X, T, fabric):
         self._faces, self._area, self._count = T, areas(X, T), len(X)
-        self._law = fabric.membrane_matrix
+        self._stiffness = fabric.membrane_matrix
         p = X[T]
         rest = np.stack([p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]], axis=2)
         slopes = np.linalg.inv(rest)
@@ -58,13 +58,13 @@ class LinearMembrane:
 
     def value(self, x, gradient):
         F, E = self._deformed(x)
-        S = E @ self._law
+        S = E @ self._stiffness
         force = np.einsum("tk,tknd,t->tnd", S, self._rates(F), self._area)
         np.add.at(gradient, self._faces, force)
         return 0.5 * float(((S * E).sum(axis=1) * self._area).sum())
 
     def stiffness(self):
-        pull = np.tile([self._law[0, 0], self._law[1, 1], 0.0], (len(self._area), 1))
+        pull = np.tile([self._stiffness[0, 0], self._stiffness[1, 1], 0.0], (len(self._area), 1))
         return self._strings(pull)
 
     def _strings(self, S):
@@ -82,11 +82,11 @@ class LinearMembrane:
         columns = np.broadcast_to(place, (m, 3, 3, 3)).ravel()
         shape = (3 * m, 3 * self._count)
         rates = csr_array((self._rates(F).ravel(), columns, 9 * np.arange(3 * m + 1)), shape=shape)
-        weight = kron(diags_array(self._area), csr_array(self._law))
+        weight = kron(diags_array(self._area), csr_array(self._stiffness))
         positive = rates.T @ weight @ rates
         if definite:
             return csc_array(positive)
-        return csc_array(positive + kron(self._strings(E @ self._law), eye_array(3)))
+        return csc_array(positive + kron(self._strings(E @ self._stiffness), eye_array(3)))
 
 
 class LinearSheet:

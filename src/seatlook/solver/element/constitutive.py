@@ -11,7 +11,7 @@ from seatlook.model import Curve, Fabric, FloatArray, IntArray
 from seatlook.solver.kernels import membrane as kernels
 
 
-def law_tables(fabrics: Sequence[Fabric]) -> tuple[FloatArray, IntArray]:
+def constitutive_tables(fabrics: Sequence[Fabric]) -> tuple[FloatArray, IntArray]:
     """Return knots (f, 3, k, 5) of warp, weft and shear of every fabric, and their counts (f, 3).
 
     Columns: strain, stiffness, stress, energy at the knot, and slope of the stiffness after it.
@@ -90,7 +90,7 @@ def _integrate(strain: FloatArray, stiffness: FloatArray) -> FloatArray:
 
 
 def _check(fabric: Fabric) -> None:
-    """Refuse curves that soften so far that the coupling makes the law lose its convexity."""
+    """Refuse curves that soften so far that the coupling makes the energy lose its convexity."""
     coupling = fabric.poisson * fabric.weft.stiffness[0]
     # The way back lies above the way out but may be softer at its foot.
     warp, weft = (

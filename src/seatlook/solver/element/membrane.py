@@ -1,4 +1,4 @@
-"""Membrane of a flat sheet: strain from the arcs of its edges, one law for each triangle."""
+"""Membrane of a flat sheet: strain from the arcs of its edges, stress from the fabric's curves."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array, eye_array, kron
 
 from seatlook.model import Fabric, FloatArray, IntArray
-from seatlook.solver.element.constitutive import law_tables, typical_stiffness
+from seatlook.solver.element.constitutive import constitutive_tables, typical_stiffness
 from seatlook.solver.element.curvature import Curvature
 from seatlook.solver.element.edgeslope import Edges, tangent_matrix
 from seatlook.solver.element.unloading import Unloading
@@ -29,8 +29,9 @@ class Membrane:
     piecewise linear in Green strain, so stress is smooth and energy a cubic. In compression it
     falls to ``compression_ratio`` times its first value over 2e-3 of strain; the coupling
     ``C12 ((1 - c) p(E11) p(E22) + c E11 E22)``, p = e^2 / (e + 2e-3) in tension and 0 else, keeps
-    the same share c, so that psi stays convex and c = 1 is the linear orthotropic law. Fabrics with
-    unloading curves have a history, see ``Unloading``; ``wear`` adds to it between steps.
+    the same share c, so that psi stays convex and c = 1 is the linear orthotropic fabric.
+    Fabrics with unloading curves have a history, see ``Unloading``; ``wear`` adds to it between
+    steps.
 
     Parameters
     ----------
@@ -55,14 +56,14 @@ class Membrane:
             count, edges.faces, edges.normal, *curvature.rows
         )
         self._bow_offset = _bow_offset(edges, curvature.offset)
-        self._law = law_tables(fabrics)
+        self._constitutive = constitutive_tables(fabrics)
         self._constants = np.array(
             [[f.poisson * f.weft.stiffness[0], f.compression_ratio] for f in fabrics]
         )
         # None costs nothing: most fabrics go back the way they came.
         self._unloading = None
         if any(f.warp_unloading or f.weft_unloading for f in fabrics):
-            self._unloading = Unloading(fabric, fabrics, self._law)
+            self._unloading = Unloading(fabric, fabrics, self._constitutive)
         self._laplacian = self._plane_laplacian(count, fabrics)
         self._bow = np.empty((len(edges.ends), 3))
         self._edge_strain = np.empty(len(edges.ends))
@@ -104,7 +105,7 @@ class Membrane:
             self._natural,
             self._area,
             self._fabric,
-            *self._law,
+            *self._constitutive,
             self._constants,
             self._pull,
         )
@@ -143,7 +144,7 @@ class Membrane:
             self._natural,
             self._area,
             self._fabric,
-            *self._law,
+            *self._constitutive,
             self._constants,
             material,
         )
@@ -188,7 +189,9 @@ class Membrane:
 
     def _stress(self) -> FloatArray:
         """Stress (m, 3) [N/m] of the last strains."""
-        S = np.asarray(kernels.laws(self._E, self._fabric, *self._law, self._constants))
+        S = np.asarray(
+            kernels.stresses(self._E, self._fabric, *self._constitutive, self._constants)
+        )
         if self._unloading is not None:
             self._unloading.stress(self._E, S)
         return S

@@ -22,7 +22,7 @@ class Unloading:
     Parameters
     ----------
     fabric : (m,) int64                   index into ``fabrics``
-    loading : tables and counts of the fabrics' curves, from ``law_tables``
+    loading : tables and counts of the fabrics' curves, from ``constitutive_tables``
     """
 
     def __init__(

@@ -101,7 +101,7 @@ class Settlement:
         """Return the energy [J] and add its gradient [N]."""
         n = len(self._slope)
         s, pull = settled_part(x, n), settled_part(gradient, n)
-        energy = kernel.column_law(
+        energy = kernel.column_energy(
             s, self._knots, self._foam.stress, self.contact.area, pull, self._slope
         )
         spread = self._layer @ s
@@ -125,7 +125,9 @@ class Settlement:
     def pressure(self, state: FloatArray) -> FloatArray:
         """Pressure on the columns, spread by the layer, (n,) [Pa]."""
         s, force = settled_part(state, len(self._slope)), np.zeros(len(self._slope))
-        kernel.column_law(s, self._knots, self._foam.stress, self.contact.area, force, self._slope)
+        kernel.column_energy(
+            s, self._knots, self._foam.stress, self.contact.area, force, self._slope
+        )
         return np.asarray(force / self.contact.area)
 
     def _column(self, upper: float) -> FloatArray:

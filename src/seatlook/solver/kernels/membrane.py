@@ -1,4 +1,4 @@
-"""Green strain of a triangle from the arc lengths of its edges, and its law."""
+"""Green strain of a triangle from the arc lengths of its edges, and its stress."""
 
 import numpy as np
 from numba import njit
@@ -32,7 +32,7 @@ def ramp(e):
 
 
 @njit(cache=True)
-def law(tables, counts, constants, f, e11, e22, e12):
+def constitutive(tables, counts, constants, f, e11, e22, e12):
     """Energy density [J/m2], stress (S11, S22, S12) [N/m] at Green strain (E11, E22, 2 E12)."""
     w1, s1, _ = curve(tables, counts, f, 0, e11)
     w2, s2, _ = curve(tables, counts, f, 1, e22)
@@ -105,7 +105,7 @@ def tensions(E, of_face, natural, area, fabric, tables, counts, constants, pull)
     pull[:] = 0.0
     for t in range(len(of_face)):
         f = fabric[t]
-        psi, s11, s22, s12 = law(tables, counts, constants, f, E[t, 0], E[t, 1], E[t, 2])
+        psi, s11, s22, s12 = constitutive(tables, counts, constants, f, E[t, 0], E[t, 1], E[t, 2])
         total += area[t] * psi
         for k in range(3):
             pull[of_face[t, k]] += area[t] * (
@@ -115,12 +115,14 @@ def tensions(E, of_face, natural, area, fabric, tables, counts, constants, pull)
 
 
 @njit(cache=True)
-def laws(E, fabric, tables, counts, constants):
+def stresses(E, fabric, tables, counts, constants):
     """Stress (S11, S22, S12) [N/m] of every triangle."""
     S = np.empty_like(E)
     for t in range(len(E)):
         f = fabric[t]
-        _, S[t, 0], S[t, 1], S[t, 2] = law(tables, counts, constants, f, E[t, 0], E[t, 1], E[t, 2])
+        _, S[t, 0], S[t, 1], S[t, 2] = constitutive(
+            tables, counts, constants, f, E[t, 0], E[t, 1], E[t, 2]
+        )
     return S
 
 

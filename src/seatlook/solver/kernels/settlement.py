@@ -1,10 +1,10 @@
-"""Slow part of the foam's answer: the law of its columns."""
+"""Slow part of the foam's answer: its columns."""
 
 from numba import njit
 
 
 @njit(cache=True)
-def column_law(settled, knots, stress, area, gradient, slope):
+def column_energy(settled, knots, stress, area, gradient, slope):
     """Energy of columns that have given way by ``settled``; adds its gradient, fills its slope."""
     last, energy = len(stress) - 1, 0.0
     for i in range(len(area)):

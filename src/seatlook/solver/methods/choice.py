@@ -7,7 +7,7 @@ from typing import Literal, Protocol
 
 from seatlook.errors import InputError
 from seatlook.model import FloatArray
-from seatlook.solver.methods.explicit import DynamicRelaxation, Explicit
+from seatlook.solver.methods.explicit import DampedDynamics, Explicit
 from seatlook.solver.methods.factor import Preconditioner
 from seatlook.solver.methods.lbfgs import Descent, Lbfgs, Potential
 
@@ -57,5 +57,5 @@ def method_of(method: MethodName | Explicit) -> Method:
 def minimiser(method: Method, shape: tuple[int, int], mass: FloatArray | None = None) -> Minimiser:
     """Return what minimises over unknowns of ``shape``; ``mass`` is real, of the same shape."""
     if isinstance(method, Explicit):
-        return DynamicRelaxation(shape, method, mass)
+        return DampedDynamics(shape, method, mass)
     return Lbfgs(shape)

@@ -195,7 +195,7 @@ class Integrator:
         return stable_step(csc_array(hessian[inner][:, inner]), self._own.ravel()[inner])
 
 
-class DynamicRelaxation:
+class DampedDynamics:
     """Minimiser by damped explicit dynamics with masses that make every wave equally slow.
 
     Damping follows the lowest frequency that the last movement shows (Underwood 1983).

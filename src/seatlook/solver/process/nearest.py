@@ -25,7 +25,7 @@ class NearestHessian:
 
     Parameters
     ----------
-    sheet : whose laws count
+    sheet : whose stiffness and hinges count
     points : (n, 3) float64 [m]   where vertices lie, those tied to each other near each other
     ties : (n, n) sparse          not zero where further scalar terms may be
     """

@@ -163,7 +163,7 @@ class Process:
         if rest:
             self.ties.close()
 
-    def settle(self, dt: float, record: Record, iterations: int) -> Record:
+    def approach_rest(self, dt: float, record: Record, iterations: int) -> Record:
         """Minimise from rest with an inertia of step ``dt``, hardly felt when that is long."""
         self.inertia.set_step(dt)
         self._lag()
@@ -243,7 +243,7 @@ class Process:
             iterations=iterations,
         )
         np.subtract(self.x, self._start, out=self.v)
-        # In settling, too, movement counts by the time step of the process.
+        # On the way to rest, too, movement counts by the time step of the process.
         self.v /= self.dt
         self._evaluations = descent.evaluations
         after = self._outside()

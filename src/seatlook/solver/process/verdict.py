@@ -39,7 +39,7 @@ def reasons(process: Process, record: Record) -> list[str]:
 
 
 def unrest(process: Process, record: Record) -> list[str]:
-    """What more settling may cure: forces out of balance, movement, gaps."""
+    """What more rounds may cure: forces out of balance, movement, gaps."""
     found = []
     if not record.residual <= RESIDUAL:
         found.append(f"out-of-balance force {record.residual:.2g} of the mean elastic force")
