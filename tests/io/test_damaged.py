@@ -76,8 +76,8 @@ def outcome(read, path):
             warnings.simplefilter("ignore", InputWarning)
             read(path)
     except InputError as error:
-        told = error.problems and all(p.got and p.expected for p in error.problems)
-        return "refused" if told else "refused without a word"
+        named = error.problems and all(p.got and p.expected for p in error.problems)
+        return "refused" if named else "refused without a word"
     return "read"
 
 
@@ -93,17 +93,17 @@ def outcomes(name, folder, count):
     path.write_bytes(content)
     assert outcome(read, path) == "read"
     rng = random.Random(name)
-    found = set()
+    results = set()
     for _ in range(count):
         path.write_bytes(damaged(content, rng))
-        found.add(outcome(read, path))
-    return found
+        results.add(outcome(read, path))
+    return results
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_damage_is_refused_with_a_message(tmp_path, name):
-    assert "refused" in (found := outcomes(name, tmp_path, 25))
-    assert found <= {"refused", "read"}
+    assert "refused" in (results := outcomes(name, tmp_path, 25))
+    assert results <= {"refused", "read"}
 
 
 @pytest.mark.validate

@@ -82,8 +82,8 @@ def test_a_bending_radius_stands_for_the_threshold(write, problems):
     assert material.first_wrinkle_radius == pytest.approx(0.025)
     assert material.c_threshold is None
     both = text.replace("[appearance]", "c_threshold_per_mm = 0.03\n[appearance]")
-    (told,) = problems(read_material, write("y.toml", both))
-    assert "fabric.first_wrinkle_radius_mm: got c_threshold_per_mm as well" in told
+    (problem,) = problems(read_material, write("y.toml", both))
+    assert "fabric.first_wrinkle_radius_mm: got c_threshold_per_mm as well" in problem
 
 
 def test_constant_stiffness_is_a_curve_of_one_knot(write):

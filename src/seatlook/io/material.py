@@ -149,15 +149,15 @@ def read_material(name_or_path: str | Path) -> Material:
             ("fabric", "first_wrinkle_radius_mm"), "c_threshold_per_mm as well", "one of them"
         )
     with document.blame(("fabric",)):
-        made = Fabric(**{_without_unit(k): v for k, v in fabric.items()})
+        built = Fabric(**{_without_unit(k): v for k, v in fabric.items()})
     with document.blame(("appearance",)):
         given = {_without_unit(k): v for k, v in look.items() if v is not None}
-        seen = Appearance(**given, maps=maps)
+        appearance = Appearance(**given, maps=maps)
     document.finish()
     return Material(
         name=document.file.stem,
-        fabric=made,
-        appearance=seen,
+        fabric=built,
+        appearance=appearance,
         c_threshold=c_threshold,
         first_wrinkle_radius=radius,
         source=_given(row["source"]),

@@ -129,9 +129,9 @@ class Array:
 
     def read(self, document: Document, key: Key, value: Any) -> Any:
         """Return the value, converted; report what is wrong with it."""
-        wanted = " x ".join("n" if n is None else str(n) for n in self.shape)
+        shape = " x ".join("n" if n is None else str(n) for n in self.shape)
         if not _is_array(value, self.shape):
-            document.report(key, shown(value), f"an array of {wanted} numbers")
+            document.report(key, shown(value), f"an array of {shape} numbers")
             return None
         array = np.array(value, dtype=np.float64)
         if not np.isfinite(array).all():

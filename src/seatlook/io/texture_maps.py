@@ -46,28 +46,28 @@ def map_files(folder: Path) -> dict[str, Path]:
     """
     if not folder.is_dir():
         raise InputError.single("maps", got="no such folder", expected="a folder", file=folder)
-    found: dict[str, Path] = {}
+    files: dict[str, Path] = {}
     problems = []
     for path in sorted(folder.iterdir()):
         role = _role(path)
         if role is None:
             continue
-        first = found.setdefault(role, path)
+        first = files.setdefault(role, path)
         if first is not path:
             expected = f"one file for the {role.replace('_dx', '')}; {first.name} is another"
             problems.append(Problem(key="maps", got=path.name, expected=expected, file=folder))
     if problems:
         raise InputError(problems)
-    if "normal" in found:
-        found.pop("normal_dx", None)
-    if {"roughness", "metalness"} <= set(found):
-        found.pop("arm", None)
-    if not found:
+    if "normal" in files:
+        files.pop("normal_dx", None)
+    if {"roughness", "metalness"} <= set(files):
+        files.pop("arm", None)
+    if not files:
         names = "NAME_Color, NAME_Roughness, NAME_Metalness, NAME_NormalGL (ambientCG) or "
         names += "name_diff, name_rough, name_metal, name_nor_gl, name_arm (Poly Haven)"
         raise InputError.single("maps", got="no map", expected=f"pictures {names}", file=folder)
     # In this order, so that a map of its own comes before the same in ``arm``.
-    return {role: found[role] for role in _NAMES if role in found}
+    return {role: files[role] for role in _NAMES if role in files}
 
 
 def _role(path: Path) -> str | None:

@@ -80,7 +80,7 @@ def browser():
 
 def view(browser, glb, light=(0, 1, 0)):
     """What the viewer read, and its pixels (160, 320, 3); nothing may leave the page."""
-    said = []
+    lines = []
 
     def answer(route):
         path = route.request.url.removeprefix(HOST)
@@ -92,20 +92,20 @@ def view(browser, glb, light=(0, 1, 0)):
         elif path.startswith("/three/") and (THREE / path[7:]).is_file():
             route.fulfill(body=(THREE / path[7:]).read_bytes(), content_type="text/javascript")
         else:
-            said.append(path)
+            lines.append(path)
             route.abort()
 
     context = browser.new_context(viewport={"width": 320, "height": 160})
     page = context.new_page()
-    page.on("console", lambda m: said.append(m.text) if m.type in ("error", "warning") else None)
-    page.on("pageerror", lambda error: said.append(str(error)))
+    page.on("console", lambda m: lines.append(m.text) if m.type in ("error", "warning") else None)
+    page.on("pageerror", lambda error: lines.append(str(error)))
     page.route("**/*", answer)
     page.goto(HOST + "/")
     page.wait_for_function("window.read", timeout=120_000)
     read = page.evaluate("window.read")
     context.close()
     # The driver's note on reading the canvas back is not about the file.
-    assert [text for text in said if "GPU stall" not in text] == []
+    assert [text for text in lines if "GPU stall" not in text] == []
     assert "error" not in read, read["error"]
     content = base64.b64decode(read.pop("pixels").split(",")[1])
     return read, np.asarray(Image.open(io.BytesIO(content)).convert("RGB")).astype(float)
@@ -194,7 +194,7 @@ def test_relief_faces_the_light_that_it_faces(browser, tmp_path, axis):
     # Tiles meet in the middle of the picture. World +y is up there and v = 0 at its middle: the
     # lower half of a tile lies above it, the upper half of the next below.
     dark, bright = ((120, 200), (120, 280)) if axis == 0 else ((50, 200), (110, 200))
-    seen = [
+    levels = [
         pixels[row - 5 : row + 5, column - 5 : column + 5].mean() for row, column in (dark, bright)
     ]
-    assert seen[1] > seen[0] + 20
+    assert levels[1] > levels[0] + 20

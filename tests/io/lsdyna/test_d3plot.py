@@ -101,8 +101,8 @@ def test_parts_are_selected_by_number_or_title(save, problems):
     written = states()
     path = save(d3plot(NODES, SHELLS, written, part=part, names={11: "Insert", 12: "Bolster"}))
     rows = slice(3, None)
-    for wanted in ([12], ["12"], ["bolster"]):
-        result = read_d3plot(path, parts=wanted)
+    for parts in ([12], ["12"], ["bolster"]):
+        result = read_d3plot(path, parts=parts)
         assert len(result.shells) == 4
         assert_read(result, written, rows=rows)
     assert problems(read_d3plot, path, parts=["rear", 13]) == [

@@ -233,7 +233,7 @@ def test_names_that_do_not_exist_are_reported_together(refused):
         ('views = ["front_34", "top"]', 'views = ["front_35", "top"]'),
         ('kind = "sun"', 'kind = "son"'),
     )
-    wanted = {
+    hints = {
         "panel.CENTRE": "'CENTER'",
         "placement.FRNT": "'FRONT'",
         "hook[0].line": "'left bolster'",
@@ -245,8 +245,8 @@ def test_names_that_do_not_exist_are_reported_together(refused):
         "zones.box[0].panel": "'CENTER'",
         "accept.BOLSTER_R inside": "'BOLSTER_R interior'",
     }
-    assert [g.split(": ")[1] for g in got] == list(wanted)
-    for message, hint in zip(got, wanted.values(), strict=True):
+    assert [g.split(": ")[1] for g in got] == list(hints)
+    for message, hint in zip(got, hints.values(), strict=True):
         assert message.endswith(f"(did you mean {hint}?)")
         assert re.match(r"scene\.toml:\d+: ", message)
 

@@ -99,8 +99,8 @@ def test_ramps_groups_and_seams_of_stages_are_read(load):
     ],
 )  # fmt: skip
 def test_stages_that_do_not_fit_each_other(load, problems, changes, message):
-    found = [got for got in problems(load, *changes) if "stage[" in got]
-    assert re.match(rf"scene\.toml:\d+: {message}", found[0]), found
+    messages = [got for got in problems(load, *changes) if "stage[" in got]
+    assert re.match(rf"scene\.toml:\d+: {message}", messages[0]), messages
 
 
 def test_stage_that_ends_before_it_starts(load, problems):

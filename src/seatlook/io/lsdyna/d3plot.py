@@ -25,7 +25,13 @@ from seatlook.io.lsdyna.d3plot_layout import (
     refuse,
     word_type,
 )
-from seatlook.io.lsdyna.element_tables import Selection, finite, select, unit_in_metres
+from seatlook.io.lsdyna.element_tables import (
+    ElementTable,
+    Selection,
+    finite,
+    select,
+    unit_in_metres,
+)
 from seatlook.model import FloatArray, IntArray, ShellResult, ShellState
 from seatlook.model.shells import StrainAxes
 
@@ -184,16 +190,16 @@ def _chosen(
         )
     n = control["numnp"]
     reference = np.asarray(words[layout.nodes : layout.nodes + 3 * n]).view(layout.real)
-    return select(
-        file,
+    shells = ElementTable(
+        file=file,
         corners=corners,
         element_ids=element_ids,
         part=part_ids[internal - 1],
-        titles=MappingProxyType(titles),
-        wanted=parts,
+        titles=titles,
         usable=layout.reported,
-        reference=reference.reshape(n, 3).astype(np.float64) * scale,
     )
+    start = reference.reshape(n, 3).astype(np.float64) * scale
+    return select(shells, parts, reference=start)
 
 
 def _numbers(layout: Layout, words: Words) -> tuple[IntArray, IntArray]:
@@ -289,12 +295,14 @@ def _family(file: Path) -> list[Path]:
     except OSError:
         names = []
     follower = re.compile(re.escape(file.name) + r"(\d{2,})")
-    found = sorted((int(m[1]), n) for n in names if (m := follower.fullmatch(n)))
-    numbers = [n for n, _ in found]
+    followers = sorted((int(m[1]), n) for n in names if (m := follower.fullmatch(n)))
+    numbers = [n for n, _ in followers]
     if numbers != list(range(1, len(numbers) + 1)):
         absent = next(i for i, n in enumerate([*numbers, -1], 1) if n != i)
-        raise refuse(file, "followers", f"no {file.name}{absent:02d}", f"all up to {found[-1][1]}")
-    return [file, *(file.with_name(name) for _, name in found)]
+        raise refuse(
+            file, "followers", f"no {file.name}{absent:02d}", f"all up to {followers[-1][1]}"
+        )
+    return [file, *(file.with_name(name) for _, name in followers)]
 
 
 def _head(file: Path) -> bytes:

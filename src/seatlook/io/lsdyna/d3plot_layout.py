@@ -83,7 +83,7 @@ def refuse(file: Path, key: str, got: object, expected: str, hint: str = "") -> 
 
 def word_type(file: Path, head: bytes) -> str:
     """Find the size and byte order of the words from the file type, word 11."""
-    seen = []
+    others = []
     for word in ("<i4", "<i8", ">i4", ">i8"):
         at = 11 * int(word[2])
         if len(head) < at + int(word[2]):
@@ -91,8 +91,8 @@ def word_type(file: Path, head: bytes) -> str:
         kind = int(np.frombuffer(head, word, 1, at)[0])
         if kind in (1, 5, 1001, 1005):
             return word
-        seen.append(_OTHER_TYPES.get(kind))
-    other = next((name for name in seen if name), None)
+        others.append(_OTHER_TYPES.get(kind))
+    other = next((name for name in others if name), None)
     got = f"an {other} file" if other else "no file type 1 or 5 in word 11"
     raise refuse(file, "file", got, "a d3plot or d3part file")
 

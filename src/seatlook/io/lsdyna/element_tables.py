@@ -18,6 +18,26 @@ _SMALLEST, _LARGEST = 2e-3, 20.0  # [m] extent of a cover or of the car around i
 
 
 @dataclass(frozen=True, slots=True)
+class ElementTable:
+    """All shells of a file.
+
+    Parameters
+    ----------
+    corners : (e, 4) int64             into the nodes of the file
+    element_ids, part : (e,) int64     numbers of the user
+    titles : part number -> title
+    usable : (e,) bool                 shells that have results
+    """
+
+    file: Path
+    corners: IntArray
+    element_ids: IntArray
+    part: IntArray
+    titles: Mapping[int, str]
+    usable: npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
 class Selection:
     """The shells to evaluate, with their nodes counted anew.
 
@@ -25,7 +45,7 @@ class Selection:
     ----------
     elements : (e,) int64     into the shells of the file
     nodes : (n,) int64        into the nodes of the file
-    dropped : shells of the wanted parts that have no results
+    dropped : shells of the chosen parts that have no results
     """
 
     shells: Shells
@@ -44,60 +64,60 @@ def unit_in_metres(name: str) -> float:
 
 
 def select(
-    file: Path,
+    table: ElementTable,
+    parts: Sequence[int | str] | None,
     *,
-    corners: IntArray,
-    element_ids: IntArray,
-    part: IntArray,
-    titles: Mapping[int, str],
-    wanted: Sequence[int | str] | None,
-    usable: npt.NDArray[np.bool_],
     reference: FloatArray | None,
     positions: FloatArray | None = None,
 ) -> Selection:
-    """Keep the shells of the wanted parts; check extent and nodes of what is kept."""
-    mine = _of_parts(file, part, titles, wanted)
-    elements = np.flatnonzero(mine & usable)
+    """Take the shells of some parts, by number or title, and check the extent of their nodes.
+
+    Parameters
+    ----------
+    parts : None for all
+    reference, positions : (nodes of the file, 3) float64 [m]    before and after loading
+    """
+    inside = _of_parts(table, parts)
+    elements = np.flatnonzero(inside & table.usable)
     if not len(elements):
         raise InputError.single(
-            "shells", got="none with results", expected="deformable shells", file=file
+            "shells", got="none with results", expected="deformable shells", file=table.file
         )
-    nodes, kept = np.unique(corners[elements], return_inverse=True)
+    nodes, corners = np.unique(table.corners[elements], return_inverse=True)
     shape = positions if reference is None else reference
     if shape is not None:
-        _check_extent(file, shape[nodes])
+        _check_extent(table.file, shape[nodes])
     shells = Shells(
-        corners=kept.reshape(-1, 4),
-        element_ids=element_ids[elements],
-        part=part[elements],
-        part_names=MappingProxyType(dict(titles)),
+        corners=corners.reshape(-1, 4),
+        element_ids=table.element_ids[elements],
+        part=table.part[elements],
+        part_names=MappingProxyType(dict(table.titles)),
         node_count=len(nodes),
         reference=None if reference is None else reference[nodes],
     )
-    return Selection(shells, elements, nodes, int((mine & ~usable).sum()))
+    return Selection(shells, elements, nodes, int((inside & ~table.usable).sum()))
 
 
-def _of_parts(
-    file: Path, part: IntArray, titles: Mapping[int, str], wanted: Sequence[int | str] | None
-) -> npt.NDArray[np.bool_]:
-    if wanted is None:
-        return np.ones(len(part), dtype=bool)
+def _of_parts(table: ElementTable, parts: Sequence[int | str] | None) -> npt.NDArray[np.bool_]:
+    if parts is None:
+        return np.ones(len(table.part), dtype=bool)
+    titles = table.titles
     numbers = {title.casefold(): number for number, title in titles.items()}
-    there = {int(p) for p in np.unique(part)}
+    there = {int(p) for p in np.unique(table.part)}
     known = ", ".join(f"{p} {titles[p]!r}" if titles.get(p) else str(p) for p in sorted(there)[:20])
     problems: list[Problem] = []
     chosen = set()
-    for name in wanted:
+    for name in parts:
         number = int(name) if str(name).isdecimal() else numbers.get(str(name).casefold())
         if number in there:
             chosen.add(number)
         else:
             problems += InputError.single(
-                "parts", got=repr(name), expected=f"a part with shells: {known}", file=file
+                "parts", got=repr(name), expected=f"a part with shells: {known}", file=table.file
             ).problems
     if problems:
         raise InputError(problems)
-    return np.isin(part, list(chosen))
+    return np.isin(table.part, list(chosen))
 
 
 def _check_extent(file: Path, points: FloatArray) -> None:

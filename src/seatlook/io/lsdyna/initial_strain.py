@@ -35,8 +35,8 @@ class _Points:
     local: bool
 
 
-def surface_strains(found: Sequence[Block], element_ids: IntArray) -> SurfaceStrains | None:
-    """Return the strains on the surfaces, None where there is no word of strains.
+def surface_strains(blocks: Sequence[Block], element_ids: IntArray) -> SurfaceStrains | None:
+    """Return the strains on the surfaces, None where the deck has none.
 
     The points of one element are averaged over its plane and a straight line through its levels is
     drawn to T = -1 and +1. A shell without an entry is unstrained, as in the calculation.
@@ -44,27 +44,27 @@ def surface_strains(found: Sequence[Block], element_ids: IntArray) -> SurfaceStr
     Raises
     ------
     InputError
-        Points on one level only, which tell nothing of the bending; local and global axes mixed.
+        Points on one level only, which do not show the bending; local and global axes mixed.
     """
-    groups = [points for block in found for points in _groups(block)]
+    groups = [points for block in blocks for points in _groups(block)]
     if not groups:
         return None
     if len({g.local for g in groups}) > 1:
         raise InputError.single(
             "*INITIAL_STRAIN_SHELL", got="ILOCAL 0 and 1", expected="one of them",
-            file=found[0].file,
+            file=blocks[0].file,
         )  # fmt: skip
     element = np.concatenate([g.element for g in groups])
     order = np.argsort(element_ids)
     at = np.minimum(np.searchsorted(element_ids[order], element), len(order) - 1)
     row = order[at]
-    mine = element_ids[row] == element
-    if not mine.any():
+    inside = element_ids[row] == element
+    if not inside.any():
         return None
-    level, six = (np.concatenate([getattr(g, n) for g in groups])[mine] for n in ("level", "six"))
-    ends = _to_surfaces(found[0], row[mine], level, six, element_ids)
+    level, six = (np.concatenate([getattr(g, n) for g in groups])[inside] for n in ("level", "six"))
+    ends = _to_surfaces(blocks[0], row[inside], level, six, element_ids)
     axes: StrainAxes = "element" if groups[0].local else "global"
-    absent = len(element_ids) - len(np.unique(row[mine]))
+    absent = len(element_ids) - len(np.unique(row[inside]))
     return SurfaceStrains(_tensors(ends[0]), _tensors(ends[1]), axes, absent)
 
 
@@ -83,7 +83,7 @@ def _to_surfaces(
         first = int(ids[there & (spread < 1e-6)][0])
         raise InputError.single(
             "*INITIAL_STRAIN_SHELL", got=f"one level of thickness for shell {first}",
-            expected="at least two, so that bending can be told", file=block.file,
+            expected="at least two, which show the bending", file=block.file,
             line=block.line,
         )  # fmt: skip
     middle = np.stack([np.bincount(row, c, e) for c in six.T], axis=1) / n[:, None]
@@ -99,7 +99,7 @@ def _tensors(six: FloatArray) -> FloatArray:
 
 def _groups(block: Block) -> list[_Points]:
     """Read the entries of a block; those of one shape that follow each other are read at once."""
-    found: list[_Points] = []
+    groups: list[_Points] = []
     at = 0
     while at < len(block.cards):
         head = block.table([10] * 8, slice(at, at + 1))
@@ -117,9 +117,9 @@ def _groups(block: Block) -> list[_Points]:
         element = block.table([10], slice(at, at + run * step, step)).ints(0)[:, 0]
         for k in range(points):
             values = _values(block, slice(at + 1 + k * lines, at + run * step, step), large)
-            found.append(_Points(element, values[:, 6], values[:, :6], bool(local)))
+            groups.append(_Points(element, values[:, 6], values[:, :6], bool(local)))
         at += run * step
-    return found
+    return groups
 
 
 def _values(block: Block, rows: slice, large: int) -> FloatArray:

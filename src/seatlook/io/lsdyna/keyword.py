@@ -15,7 +15,12 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.io.lsdyna.cards import Block, blocks
-from seatlook.io.lsdyna.element_tables import Selection, select, unit_in_metres
+from seatlook.io.lsdyna.element_tables import (
+    ElementTable,
+    Selection,
+    select,
+    unit_in_metres,
+)
 from seatlook.io.lsdyna.initial_strain import SurfaceStrains, surface_strains
 from seatlook.io.toml import read_file
 from seatlook.model import FloatArray, IntArray, ShellResult, ShellState
@@ -25,7 +30,7 @@ _MAX_INCLUDES = 100
 
 @dataclass(slots=True)
 class _Deck:
-    """What was found in a deck and its includes."""
+    """What a deck and its includes hold."""
 
     node_ids: list[IntArray] = field(default_factory=list)
     nodes: list[FloatArray] = field(default_factory=list)
@@ -63,21 +68,10 @@ def read_keyword(
     file = Path(path)
     scale = unit_in_metres(length_unit)
     deck = _read(file)
-    table = _shells(file, deck)
     node_ids, positions = _nodes(file, deck, scale)
-    corners = _indices(file, node_ids, table)
+    table = _table(file, deck, node_ids)
     start = None if reference is None else _reference(Path(reference), node_ids, scale)
-    chosen = select(
-        file,
-        corners=corners,
-        element_ids=table[:, 0],
-        part=table[:, 1],
-        titles=deck.titles,
-        wanted=parts,
-        usable=np.ones(len(table), dtype=bool),
-        reference=start,
-        positions=positions,
-    )
+    chosen = select(table, parts, reference=start, positions=positions)
     shells = chosen.shells
     strains = surface_strains(deck.strains, shells.element_ids)
     if strains is None and shells.reference is None:
@@ -98,6 +92,18 @@ def read_keyword(
     )
     return ShellResult(
         shells=shells, times=np.zeros(1), read=[state].__getitem__, notes=_notes(strains)
+    )
+
+
+def _table(file: Path, deck: _Deck, node_ids: IntArray) -> ElementTable:
+    table = _shells(file, deck)
+    return ElementTable(
+        file=file,
+        corners=_indices(file, node_ids, table),
+        element_ids=table[:, 0],
+        part=table[:, 1],
+        titles=deck.titles,
+        usable=np.ones(len(table), dtype=bool),
     )
 
 
@@ -122,7 +128,7 @@ def _read(file: Path) -> _Deck:
     return deck
 
 
-def _with_includes(file: Path, content: bytes, seen: set[Path]) -> Iterator[Block]:
+def _with_includes(file: Path, content: bytes, opened: set[Path]) -> Iterator[Block]:
     for block in blocks(file, content):
         if block.name != "INCLUDE":
             yield block
@@ -132,19 +138,19 @@ def _with_includes(file: Path, content: bytes, seen: set[Path]) -> Iterator[Bloc
             if not name:
                 continue
             target = (file.parent / name).resolve()
-            if target in seen or len(seen) > _MAX_INCLUDES:
+            if target in opened or len(opened) > _MAX_INCLUDES:
                 raise InputError.single(
                     "*INCLUDE", got=f"{name!r} again", expected="each file once",
                     file=file, line=line,
                 )  # fmt: skip
-            seen.add(target)
+            opened.add(target)
             try:
                 inner = read_file(file.parent / name)
             except (InputError, ValueError) as error:
                 raise InputError.single(
                     "*INCLUDE", got=repr(name), expected="a readable file", file=file, line=line
                 ) from error
-            yield from _with_includes(file.parent / name, inner, seen)
+            yield from _with_includes(file.parent / name, inner, opened)
 
 
 def _take(deck: _Deck, block: Block) -> None:

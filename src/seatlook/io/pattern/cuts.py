@@ -1,4 +1,4 @@
-"""Notches cut into an outline: found by their shape and, if small, closed; millimetres."""
+"""Notches cut into an outline: recognised by their shape and, if small, closed; millimetres."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TURN_DEG = 20.0  # at the mouth; the outline must go on behind it within the sa
 _ON_LINE_MM = 0.01  # off the line between its neighbours, where a mouth is no vertex of its own
 _LONGEST = 8.0  # way round a cut over its size
 _ONE_NOTCH_MM = 2.0  # a cut and a point that are closer are one notch
-_SAME_MM = 0.2  # by which the shape inside a cut is told
+_SAME_MM = 0.2  # by which shapes inside a cut differ
 
 
 class Cut(NamedTuple):
@@ -59,9 +59,9 @@ def close_cuts(points: FloatArray, below: float) -> tuple[FloatArray, tuple[Notc
     for cut in cuts:
         keep[np.arange(cut.first + 1, cut.last) % n] = False
         mouth[[cut.first % n, cut.last % n]] = True
-    kept = np.flatnonzero(keep)
-    gone = _straight(points[kept], mouth[kept])
-    return points[kept[~gone]], tuple(cut.notch for cut in cuts)
+    left = np.flatnonzero(keep)
+    flat = _straight(points[left], mouth[left])
+    return points[left[~flat]], tuple(cut.notch for cut in cuts)
 
 
 def with_cuts(drawn: Sequence[Notch], cuts: Sequence[Notch]) -> tuple[Notch, ...]:
@@ -88,10 +88,10 @@ def _find(points: FloatArray, below: float) -> list[Cut]:
     done = 0
     for first in turns[turns < n]:
         near = (turns > first + 1) & (way[turns] - way[first] < _LONGEST * below)
-        found = [c for k in turns[near] if (c := _cut(points, int(first), int(k), below))]
-        if found and first >= done:
-            cuts.append(found[-1])
-            done = found[-1].last
+        longer = [c for k in turns[near] if (c := _cut(points, int(first), int(k), below))]
+        if longer and first >= done:
+            cuts.append(longer[-1])
+            done = longer[-1].last
     return cuts
 
 
@@ -135,16 +135,16 @@ def _kind(s: FloatArray, depth: FloatArray) -> NotchKind:
 
 def _straight(points: FloatArray, mouth: BoolArray) -> BoolArray:
     """Return which mouths (n,) lie on the line between the vertices around them."""
-    gone = np.zeros(len(points), dtype=bool)
+    flat = np.zeros(len(points), dtype=bool)
     fixed = np.flatnonzero(~mouth)
     if len(fixed) < 2:
-        return gone
+        return flat
     for k in np.flatnonzero(mouth):
         at = np.searchsorted(fixed, k)
         a, b = points[fixed[at - 1]], points[fixed[at % len(fixed)]]
         across = np.array([a[1] - b[1], b[0] - a[0]]) / np.hypot(*(b - a))
-        gone[k] = abs((points[k] - a) @ across) < _ON_LINE_MM
-    return gone
+        flat[k] = abs((points[k] - a) @ across) < _ON_LINE_MM
+    return flat
 
 
 def _unit(vector: FloatArray) -> FloatArray:

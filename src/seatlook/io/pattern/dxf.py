@@ -114,15 +114,15 @@ def _panels(
 
 def _open(path: Path) -> Any:
     read_file(path)
-    with listening() as said:
+    with listening() as messages:
         try:
             document = ezdxf.filemanagement.readfile(path)
         except Exception as error:  # on damaged files it raises whatever it stumbles over
             raise _refusal(path, error) from error
-    lost = [message for message in said if loses_a_piece(message)]
+    lost = [message for message in messages if loses_a_piece(message)]
     if lost:
         raise InputError.single("file", got=lost[0], expected="a whole DXF file", file=path)
-    for message in dict.fromkeys(said):
+    for message in dict.fromkeys(messages):
         warnings.warn(f"{path}: {message}", InputWarning, 4)
     return document
 

@@ -24,12 +24,12 @@ NOTCH_LAYERS: dict[str, NotchKind] = {
 
 def read_texts(layout: Any) -> dict[str, str]:
     """Return the texts of the form ``Key: value``; keys without their case."""
-    found = {}
+    texts = {}
     for entity in layout.query("TEXT"):
         key, colon, value = decode_dxf_unicode(entity.dxf.text).partition(":")
         if colon:
-            found[key.strip().casefold()] = value.strip()
-    return found
+            texts[key.strip().casefold()] = value.strip()
+    return texts
 
 
 def read_polylines(block: Any, layer: str) -> list[FloatArray]:

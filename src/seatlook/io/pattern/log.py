@@ -8,24 +8,24 @@ from contextlib import contextmanager
 
 
 class _Collector(logging.Handler):
-    def __init__(self, said: list[str]) -> None:
+    def __init__(self, messages: list[str]) -> None:
         super().__init__(logging.WARNING)
-        self._said = said
+        self._messages = messages
 
     def emit(self, record: logging.LogRecord) -> None:
-        self._said.append(record.getMessage().rstrip("."))
+        self._messages.append(record.getMessage().rstrip("."))
 
 
 @contextmanager
 def listening() -> Iterator[list[str]]:
     """Collect the library's warnings."""
-    said: list[str] = []
-    handler, logger = _Collector(said), logging.getLogger("ezdxf")
+    messages: list[str] = []
+    handler, logger = _Collector(messages), logging.getLogger("ezdxf")
     propagates = logger.propagate
     logger.addHandler(handler)
     logger.propagate = False
     try:
-        yield said
+        yield messages
     finally:
         logger.removeHandler(handler)
         logger.propagate = propagates

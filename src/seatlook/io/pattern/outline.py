@@ -224,9 +224,9 @@ def corners(points: FloatArray, marks: FloatArray, *, within: float = 0.5) -> In
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     turn = np.degrees(np.abs(np.arctan2(cross, (before * after).sum(axis=1))))
-    found = set(np.flatnonzero(turn > CORNER_DEG).tolist())
+    vertices = set(np.flatnonzero(turn > CORNER_DEG).tolist())
     for mark in marks:
         distance = np.hypot(*(points - mark).T)
         if distance.min() < within:
-            found.add(int(distance.argmin()))
-    return np.array(sorted(found), dtype=np.int64)
+            vertices.add(int(distance.argmin()))
+    return np.array(sorted(vertices), dtype=np.int64)

@@ -149,8 +149,8 @@ def make_cameras(document: Document, row: dict[str, Any], centre: FloatArray) ->
 
 def _camera(**values: Any) -> Camera:
     camera = Camera(**values)
-    ahead = camera.target - camera.position
-    if np.linalg.norm(np.cross(ahead, camera.up)) < 1e-6 * np.linalg.norm(ahead):
+    sight = camera.target - camera.position
+    if np.linalg.norm(np.cross(sight, camera.up)) < 1e-6 * np.linalg.norm(sight):
         raise InputError.single(
             "up", got=camera.up.tolist(), expected="a direction across the line of sight"
         )
