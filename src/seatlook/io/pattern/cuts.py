@@ -59,9 +59,9 @@ def close_cuts(points: FloatArray, below: float) -> tuple[FloatArray, tuple[Notc
     for cut in cuts:
         keep[np.arange(cut.first + 1, cut.last) % n] = False
         mouth[[cut.first % n, cut.last % n]] = True
-    left = np.flatnonzero(keep)
-    flat = _straight(points[left], mouth[left])
-    return points[left[~flat]], tuple(cut.notch for cut in cuts)
+    index = np.flatnonzero(keep)
+    flat = _straight(points[index], mouth[index])
+    return points[index[~flat]], tuple(cut.notch for cut in cuts)
 
 
 def with_cuts(drawn: Sequence[Notch], cuts: Sequence[Notch]) -> tuple[Notch, ...]:
