@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from cyclopts import App
 
+from seatlook import __version__
 from seatlook.cli import app
 
 ROOT = Path(__file__).parents[1]
@@ -146,6 +147,14 @@ def test_the_readmes_example_runs(demo_scene, tmp_path):
     assert done.returncode == 0, done.stderr
     assert re.fullmatch(r"W2 is above 1 on \d+\.\d% of the elements\n", done.stdout)
     assert (tmp_path / "seat.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_changelog_begins_with_this_version():
+    versions = re.findall(r"^## (\S+) - (\d{4}-\d\d-\d\d)$", text_of(ROOT / "CHANGELOG.md"), re.M)
+    assert len(versions) == len(re.findall(r"^## ", text_of(ROOT / "CHANGELOG.md"), re.M))
+    assert versions[0][0] == __version__
+    order = [(tuple(int(n) for n in number.split(".")), day) for number, day in versions]
+    assert order == sorted(order, reverse=True)
 
 
 def test_every_make_target_it_names_exists():

@@ -1,3 +1,3 @@
 """The version of seatlook; below everything, so that any module may name it."""
 
-__version__ = "0.1.0"
+__version__ = "0.4.0"
