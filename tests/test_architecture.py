@@ -33,7 +33,6 @@ KNOWN_WIDE = {
     "seatlook.solver.methods.explicit.advance",
     "seatlook.solver.sheet.solve_sheet",
     "seatlook.solver.solve.solve",
-    "seatlook.visibility.scoring.score_scene",
 }
 HEAVY = ("numba", "scipy", "vtk", "vtkmodules", "pyvista", "trimesh")
 

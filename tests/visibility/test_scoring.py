@@ -19,7 +19,7 @@ from seatlook.report.sections.score import (
     zone_table,
 )
 from seatlook.visibility.scoring import score_scene
-from seatlook.visibility.view import ScoreRefusedError
+from seatlook.visibility.view import ScoreRefusedError, View
 from support import scenes
 from support.reference.lit_sheets import flat
 from support.seen.covers import BLACK, RIG, ROUGH, block, oblique
@@ -54,6 +54,11 @@ def indices(solution):
     return WrinkleMap(c=one, w1=one, w2=one, r_stretch=one, w_stretch=one, w_compression=0 * one)
 
 
+def scored_of(scene, solution):
+    view = View(solution, scene.cameras[0], quality="draft")
+    return score_scene(scene, view, indices(solution))
+
+
 LIMITS = (
     Limit(zone="A", measure="vwi", maximum=0.01),
     Limit(zone="right interior", measure="equivalent_height_mm", maximum=1e9),
@@ -64,7 +69,7 @@ LIMITS = (
 @pytest.fixture(scope="module")
 def scored(wrinkled):
     solution = foam_under(wrinkled, flat, 20)
-    return score_scene(scene(limits=LIMITS), solution, indices(solution), quality="draft")
+    return scored_of(scene(limits=LIMITS), solution)
 
 
 def test_limits_of_a_class_and_of_a_zone(scored):
@@ -115,7 +120,7 @@ def test_a_limit_on_a_zone_out_of_view_is_refused(wrinkled):
     solution = foam_under(wrinkled, flat, 20)
     limits = (Limit(zone="B", measure="vwi", maximum=1.0),)
     with pytest.raises(InputError, match=r"accept\.B\.vwi: got no pixel of it in view oblique"):
-        score_scene(scene(limits=limits), solution, indices(solution), quality="draft")
+        scored_of(scene(limits=limits), solution)
 
 
 def test_over_a_foam_as_rough_as_wrinkles_no_score_is_given(wrinkled):
@@ -123,4 +128,4 @@ def test_over_a_foam_as_rough_as_wrinkles_no_score_is_given(wrinkled):
     noise = np.random.default_rng(0)
     solution = foam_under(wrinkled, lambda x, y: 0.004 * noise.normal(size=x.shape), 60)
     with pytest.raises(ScoreRefusedError, match=r"score of view oblique under sun: got VWI"):
-        score_scene(scene(), solution, indices(solution), quality="draft")
+        scored_of(scene(), solution)

@@ -69,6 +69,7 @@ def score(
     from seatlook.pbr import offscreen_backend
     from seatlook.report.sections.score import score_checks
     from seatlook.visibility.scoring import score_scene
+    from seatlook.visibility.view import View
 
     if search_light and out is None:
         raise InputError.single("--search-light", got="no --out", expected="a folder for charts")
@@ -77,15 +78,9 @@ def score(
     camera = camera_of(read, view)
     solution = result_of(read, _result_file(scene, result))
     with progress() as show:
-        found = score_scene(
-            read,
-            solution,
-            wrinkle_map(read, solution),
-            camera=camera,
-            mode=reference,
-            cutoff=cutoff_mm / 1e3,
-            progress=show,
-        )
+        show("score", what="reference")
+        scene_view = View(solution, camera, mode=reference, cutoff=cutoff_mm / 1e3)
+        found = score_scene(read, scene_view, wrinkle_map(read, solution), progress=show)
         searches = {}
         if search_light and out is not None:
             searches = _searches(read, solution, camera, out, show, mode=reference)

@@ -1,4 +1,4 @@
-"""Cheap measures beside VWI; where they order two designs otherwise, nobody should be sure."""
+"""Cheap measures beside VWI; where they order two designs differently, the order is uncertain."""
 
 from __future__ import annotations
 

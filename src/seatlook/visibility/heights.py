@@ -95,14 +95,14 @@ def amplitude_ladder(
     values, zones = np.zeros(len(rungs)), np.zeros((len(rungs), len(names)))
     for k, factor in enumerate(factors[1:], start=1):
         studio = view.studio_of(amplified(view, float(factor)))
-        found = score(
+        result = score(
             luminance(_draw(studio, view, black, rig)),
             smooth,
             pixels_per_degree=view.camera.pixels_per_degree,
             mask=view.region.mask,
         )
-        values[k] = found.vwi
-        zones[k] = zone_visibility(found.map, view.region.zone, len(names))
+        values[k] = result.vwi
+        zones[k] = zone_visibility(result.map, view.region.zone, len(names))
     own = {names[k]: peak_to_valley(view, names[k]) for k in np.flatnonzero(~np.isnan(zones[-1]))}
     ladders = {
         name: Ladder(height=h, heights=factors * h, vwi=zones[:, names.index(name)])

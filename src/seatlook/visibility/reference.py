@@ -27,11 +27,11 @@ from seatlook.wrinkle import low_passed
 Mode = Literal["view-ray", "normals", "design"]
 # Waves up to this length [m] count as wrinkles; demo covers wrinkle on their foam at 63 mm.
 CUTOFF = 0.1
-# The foam's facets show up as waves of its element size: shorter ones than this many of the
-# cover's elements, which it could not show rightly either, stay in the reference.
+# The triangles of the foam show up as waves of its element size. Waves shorter than this many of
+# the cover's elements, which the cover cannot show correctly either, stay in the reference.
 _RESOLVED = 3.0
-# Cosine between ray and normal from which a pixel is scored; vertices are held below its half,
-# where a ray tells width rather than depth, and on the far side.
+# Cosine between ray and normal from which a pixel is scored. Below its half, where a ray measures
+# width rather than depth, and on the far side vertices are not moved.
 _GRAZING = 0.2
 # Pixels beside a silhouette that are left out: the finest bands reach this far.
 _SILHOUETTE = 6
@@ -88,23 +88,23 @@ def smooth_reference(solution: Solution, camera: Camera, *, cutoff: float = CUTO
         return replace(solution, positions=x + step[:, None] * ray)
     height, _ = field_of(cover.foam).at(x)
     height = np.where(np.isfinite(height), height, 0.0)
-    wanted = height - _band(cover, height, cutoff)
-    return _moved(solution, cover.foam, camera, wanted, passes=_PASSES)
+    target = height - _band(cover, height, cutoff)
+    return _moved(solution, cover.foam, camera, target, passes=_PASSES)
 
 
 def design_reference(solution: Solution, camera: Camera) -> Solution:
     """Lay the cover on the foam as designed, half its thickness above it, along the camera's rays.
 
-    Unlike the smoothed shape it holds no sag and no gap either: whatever the cover does
-    otherwise than drawn counts as visible.
+    Unlike the smoothed shape it has no sag and no gap: every difference from the drawn shape counts
+    as visible.
 
     Raises
     ------
     InputError
         No foam, a camera inside the cover.
     """
-    wanted = half_thickness(solution.cover)
-    return _moved(solution, foam_of(solution.cover), camera, wanted, passes=_FAR_PASSES)
+    target = half_thickness(solution.cover)
+    return _moved(solution, foam_of(solution.cover), camera, target, passes=_FAR_PASSES)
 
 
 def foam_of(cover: Cover) -> Foam:
@@ -122,15 +122,15 @@ def half_thickness(cover: Cover) -> FloatArray:
 
 
 def _moved(
-    solution: Solution, foam: Foam, camera: Camera, wanted: FloatArray, *, passes: int
+    solution: Solution, foam: Foam, camera: Camera, target: FloatArray, *, passes: int
 ) -> Solution:
-    """Move vertices along their rays to the height (n,) over the foam that is wanted."""
+    """Move vertices along their rays to the target height (n,) over the foam."""
     x = np.array(solution.positions)
     field, ray = field_of(foam), _rays(camera, x)
     height, normal = field.at(x)
     known = np.isfinite(height)
     for _ in range(passes):
-        off = np.where(known & np.isfinite(height), height - wanted, 0.0)
+        off = np.where(known & np.isfinite(height), height - target, 0.0)
         x += (off * _seen(-_dot(normal, ray)))[:, None] * ray
         height, normal = field.at(x)
     return replace(solution, positions=x)
@@ -149,7 +149,7 @@ _fields: OrderedDict[int, tuple[Foam, DistanceField]] = OrderedDict()
 
 
 def field_of(foam: Foam) -> DistanceField:
-    """Distance from a foam; those of the last two are kept, with their foams."""
+    """Distance from a foam; those of the last two foams are cached."""
     if id(foam) not in _fields:
         _fields[id(foam)] = foam, distance_field(foam.vertices, foam.faces)
         if len(_fields) > 2:
@@ -166,7 +166,7 @@ def waves(solution: Solution, *, cutoff: float = CUTOFF) -> FloatArray:
     return _band(cover, np.where(np.isfinite(height), height, 0.0), cutoff)
 
 
-def standing_off(solution: Solution) -> FloatArray:
+def height_over_design(solution: Solution) -> FloatArray:
     """Height (n,) [m] of every vertex over the designed surface; 0 where there is no foam below."""
     height, _ = field_of(foam_of(solution.cover)).at(np.array(solution.positions))
     return np.where(np.isfinite(height), height - half_thickness(solution.cover), 0.0)
@@ -213,8 +213,8 @@ def region(studio: Studio, camera: Camera, *, zones: tuple[str, ...] | None = No
     edge = (face < 0) | (cosine < _GRAZING)
     # The nearest pixel of a silhouette is the nearest one that shows no cover or a grazing face.
     away = distance_transform_edt(~edge) > _SILHOUETTE if edge.any() else np.ones(face.shape, bool)
-    wanted = np.isin(zone, [names.index(name) for name in zones])
-    mask = wanted & away
+    inside = np.isin(zone, [names.index(name) for name in zones])
+    mask = inside & away
     if not mask.any():
         raise InputError.single(
             f"camera {camera.name}", got="no pixel of the zones", expected="a view of them"

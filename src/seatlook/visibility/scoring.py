@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 
 from seatlook import io
 from seatlook.errors import InputError
-from seatlook.model import Camera, Limit, Scene, Solution, WrinkleMap
+from seatlook.model import Limit, Scene, WrinkleMap
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES, Verdict
 from seatlook.visibility.grid import Grid, score_grid
 from seatlook.visibility.heights import Ladder, amplitude_ladder
-from seatlook.visibility.reference import CUTOFF, Mode
 from seatlook.visibility.view import View
 
-BLACK = "black-leather"  # what equivalent heights are told on
+BLACK = "black-leather"  # the material of equivalent heights
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,7 +24,7 @@ class SceneScore:
 
     Parameters
     ----------
-    null : VWI of the cover without wrinkles, the highest found; below the gate
+    null : largest VWI of the cover without wrinkles; below the gate
     grid : textures by rigs
     ladder : of black leather under the reference rig
     verdicts : of those limits of [accept] that are on the score
@@ -50,22 +47,14 @@ class SceneScore:
 
 
 def score_scene(
-    scene: Scene,
-    solution: Solution,
-    indices: WrinkleMap,
-    *,
-    camera: Camera | None = None,
-    mode: Mode = "view-ray",
-    cutoff: float = CUTOFF,
-    quality: str = "score",
-    progress: Progress | None = None,
+    scene: Scene, view: View, indices: WrinkleMap, *, progress: Progress = silent
 ) -> SceneScore:
     """Score every texture of a scene under every rig, from one camera.
 
     Parameters
     ----------
-    camera : None for the scene's first
-    mode, cutoff, quality : see :class:`View`
+    view : of the scene's solution beside its reference
+    indices : of that solution, to split the score by cause
 
     Raises
     ------
@@ -74,17 +63,14 @@ def score_scene(
     InputError
         A limit on a zone that is not in view.
     """
-    say = progress or silent
-    say("score", what="reference")
-    view = View(solution, camera or scene.cameras[0], mode=mode, cutoff=cutoff, quality=quality)
     scored = [limit for limit in scene.limits if limit.measure in SCORE_MEASURES]
     for limit in scored:
         _zones_of(limit, scene, view)
-    say("score", what="null gate")
+    progress("score", what="null gate")
     null = null_gate(view, scene)
-    say("score", what="grid")
+    progress("score", what="grid")
     grid = score_grid(view, scene.textures, scene.rigs, indices=indices)
-    say("score", what="amplitude ladder")
+    progress("score", what="amplitude ladder")
     ladder = amplitude_ladder(view, io.read_material(BLACK).appearance)
     grid = grid.on_ladder(ladder)
     verdicts = tuple(
@@ -108,24 +94,20 @@ def _zones_of(limit: Limit, scene: Scene, view: View) -> tuple[str, ...]:
     names = view.solution.cover.zone_names
     shown = [names[k] for k in np.unique(view.region.zone[view.region.mask])]
     classes = {box.name: box.visibility for box in scene.boxes}
-    found = tuple(name for name in shown if limit.zone in (name, classes.get(name)))
-    if not found:
+    named = tuple(name for name in shown if limit.zone in (name, classes.get(name)))
+    if not named:
         raise InputError.single(
             f"accept.{limit.zone}.{limit.measure}",
             got=f"no pixel of it in view {view.camera.name}",
             expected=f"one of {', '.join(shown)}, or a view that shows it",
             file=scene.path,
         )
-    return found
+    return named
 
 
 def _value(limit: Limit, zones: tuple[str, ...], grid: Grid, ladder: Ladder) -> float:
     """Worst value over the zones, all textures and all rigs."""
-    cells: Mapping[tuple[str, str], MappingProxyType[str, float]] = {
-        cell: sight.zones for cell, sight in grid.sights.items()
-    }
+    values = [(zone, sight.zones[zone]) for sight in grid.sights.values() for zone in zones]
     if limit.measure == "vwi":
-        return max(found[zone] for found in cells.values() for zone in zones)
-    return 1e3 * max(
-        ladder.zones[zone].equivalent(found[zone]) for found in cells.values() for zone in zones
-    )
+        return max(vwi for _, vwi in values)
+    return 1e3 * max(ladder.zones[zone].equivalent(vwi) for zone, vwi in values)

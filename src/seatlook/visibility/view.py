@@ -24,9 +24,9 @@ from seatlook.visibility.reference import (
     field_of,
     foam_of,
     half_thickness,
+    height_over_design,
     region,
     smooth_reference,
-    standing_off,
     waves,
 )
 from seatlook.visibility.vwi import VisibilityScore, region_visibility, score, zone_visibility
@@ -38,7 +38,7 @@ _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 class ScoreRefusedError(InputError):
-    """A cover without wrinkles scores: test and reference do not lie on each other."""
+    """A cover without wrinkles scores: test and reference do not match."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +66,7 @@ class Sight:
 class View:
     """A solved cover and the same without its wrinkles, from one camera.
 
-    Studios keep shadows per light and faces per camera, so further textures cost only shading.
+    Studios cache shadows per light and faces per camera, so further textures cost only shading.
     """
 
     def __init__(
@@ -109,7 +109,7 @@ class View:
     def heights(self) -> FloatArray:
         """Height (n,) [m] of every vertex over the reference, along the normal."""
         if self.mode == "design":
-            return standing_off(self.solution)
+            return height_over_design(self.solution)
         return waves(self.solution, cutoff=self.cutoff)
 
     def sight(self, looks: Looks, rig: Rig, *, indices: WrinkleMap | None = None) -> Sight:
@@ -122,23 +122,23 @@ class View:
         """
         picture, reference = self._draw(looks, rig)
         pair = luminance(picture), luminance(reference)
-        found = self._score(*pair)
+        result = self._score(*pair)
         mask = self.region.mask
         measures = Measures(
-            vwi=found.vwi,
+            vwi=result.vwi,
             log_ratio=log_ratio(*pair, mask=mask),
             dissimilarity=dissimilarity(
                 *pair, white=saturation_luminance(picture.ev100), mask=mask
             ),
         )
         names = self.solution.cover.zone_names
-        values = zone_visibility(found.map, self.region.zone, len(names))
+        values = zone_visibility(result.map, self.region.zone, len(names))
         zones = {names[k]: float(values[k]) for k in np.flatnonzero(np.isfinite(values))}
         return Sight(
-            score=found,
+            score=result,
             zones=MappingProxyType(zones),
-            stretch=None if indices is None else self._cause(found, indices.w_stretch),
-            compression=None if indices is None else self._cause(found, indices.w_compression),
+            stretch=None if indices is None else self._cause(result, indices.w_stretch),
+            compression=None if indices is None else self._cause(result, indices.w_compression),
             measures=measures,
             picture=picture,
         )
@@ -154,19 +154,19 @@ class View:
         Raises
         ------
         ScoreRefusedError
-            A score of 0.1 or more: then pictures and references do not lie on each other, and no
-            score of this view may be believed.
+            A score of 0.1 or more: then pictures and references do not match, and no score of this
+            view can be trusted.
         InputError
             No foam.
         """
-        found = self._null.vwi(looks, rig)
-        if not found < NULL_LIMIT:
+        vwi = self._null.vwi(looks, rig)
+        if not vwi < NULL_LIMIT:
             raise ScoreRefusedError.single(
                 f"score of view {self.camera.name} under {rig.name}",
-                got=f"VWI {found:.3g} of a cover without wrinkles",
+                got=f"VWI {vwi:.3g} of a cover without wrinkles",
                 expected=f"below {NULL_LIMIT:g}, or no score can be given",
             )
-        return found
+        return vwi
 
     @functools.cached_property
     def _null(self) -> View:
@@ -190,12 +190,12 @@ class View:
             pixel_area=self.region.area,
         )
 
-    def _cause(self, found: VisibilityScore, index: FloatArray) -> float | None:
+    def _cause(self, result: VisibilityScore, index: FloatArray) -> float | None:
         """VWI weighted by an index (m,) of the faces in view."""
         weight = np.where(self.region.mask, index[self.region.face], 0.0)
         if not weight.any():
             return None
-        return region_visibility(found.map, mask=self.region.mask, weight=weight)
+        return region_visibility(result.map, mask=self.region.mask, weight=weight)
 
 
 def on_foam(solution: Solution) -> Solution:

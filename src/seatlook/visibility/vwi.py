@@ -1,10 +1,10 @@
-"""VWI, the visible wrinkle index: how much a wrinkle changes what an eye gets.
+"""VWI, the visible wrinkle index: how much a wrinkle changes what an eye receives.
 
 Both pictures are split into octaves by a binomial pyramid (Burt and Adelson 1983); the contrast
 of each octave is weighed by the sensitivity of the eye to its frequency at its luminance (Barten)
-and divided by what the pattern that both share hides (masking after Foley 1994); octaves and
+and divided by how much the pattern that both share hides (masking after Foley 1994); octaves and
 pixels are pooled by a Minkowski sum. Its unit is the threshold of the model observer, which no
-panel has confirmed: see ``Observer.calibrated``.
+jury has confirmed: see ``Observer.calibrated``.
 """
 
 from __future__ import annotations

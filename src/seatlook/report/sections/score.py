@@ -13,7 +13,7 @@ import numpy as np
 from seatlook.chain.evaluation import Evaluation
 from seatlook.errors import InputError
 from seatlook.model import Limit
-from seatlook.model.progress import Progress
+from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES
 from seatlook.model.table import Table, number
 from seatlook.pbr.maps.pixel_map import render_pixel_map
@@ -21,7 +21,7 @@ from seatlook.report.page.types import Check, MapView, ScoreSection
 from seatlook.visibility.light_search import WorstLight
 from seatlook.visibility.observer import OBSERVER
 from seatlook.visibility.scoring import SceneScore, score_scene
-from seatlook.visibility.view import NULL_LIMIT
+from seatlook.visibility.view import NULL_LIMIT, View
 
 _LEAST_TOP = 3.0  # of a map's range: the first value of D that counts as visible
 
@@ -33,13 +33,8 @@ def visibility(evaluation: Evaluation, progress: Progress | None = None) -> Scor
     """
     scene = evaluation.scene
     try:
-        found = score_scene(
-            scene,
-            evaluation.solution,
-            evaluation.indices,
-            camera=evaluation.camera,
-            progress=progress,
-        )
+        view = View(evaluation.solution, evaluation.camera)
+        found = score_scene(scene, view, evaluation.indices, progress=progress or silent)
     except InputError as error:
         limits = [limit for limit in scene.limits if limit.measure in SCORE_MEASURES]
         return ScoreSection(
