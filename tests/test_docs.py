@@ -42,11 +42,11 @@ def prose_of(page: Path) -> str:
     return BLOCK.sub("", text_of(page))
 
 
-def anchors_of(page: Path) -> set[str]:
-    """Return the anchors of a page's headings, made as GitHub makes them."""
+def anchors_of(page: Path, *, level: int = 1) -> set[str]:
+    """Return the anchors of a page's headings from a level on, made as GitHub makes them."""
     headings = [
         re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
-        for heading in re.findall(r"^#{1,6} (.*)$", prose_of(page), re.M)
+        for heading in re.findall(rf"^#{{{level},6}} (.*)$", prose_of(page), re.M)
     ]
     return {
         f"{heading}-{n}" if (n := headings[:i].count(heading)) else heading
@@ -186,3 +186,20 @@ def test_every_page_is_reached_from_the_index():
     index = ROOT / "docs" / "index.md"
     linked = {(index.parent / target).resolve() for target, _ in LINK.findall(text_of(index))}
     assert {page for page in PAGES if index.parent in page.parents and page != index} <= linked
+
+
+def test_every_decision_has_three_parts_and_a_line_in_the_table():
+    folder = ROOT / "docs" / "decisions"
+    listed = re.findall(
+        r"^\| \[.*?\]\((\w+\.md#[^)]*)\) \| .+ \|$", text_of(folder / "index.md"), re.M
+    )
+    made = []
+    for page in sorted(folder.glob("*.md")):
+        if page.name == "index.md":
+            continue
+        for entry in text_of(page).split("\n## ")[1:]:
+            parts = re.findall(r"^\*\*(\w+)\.\*\* \S", entry, re.M)
+            assert parts == ["Context", "Decision", "Figure"], entry.splitlines()[0]
+        made += [f"{page.name}#{a}" for a in anchors_of(page, level=2)]
+    assert sorted(listed) == sorted(made)
+    assert len(made) >= 60
