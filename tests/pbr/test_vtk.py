@@ -7,8 +7,8 @@ import pytest
 
 from seatlook.errors import RenderError
 from seatlook.model import Camera, named_view
-from seatlook.pbr.shading.kernels import bvh
-from seatlook.pbr.shading.kernels.surface import ray_through
+from seatlook.pbr.kernels import bvh
+from seatlook.pbr.kernels.surface import ray_through
 from seatlook.pbr.shading.studio import eye_of
 from support.reference.lit_sheets import above, sheet
 

@@ -37,7 +37,7 @@ from vtkmodules.vtkRenderingOpenGL2 import (
 from seatlook.errors import RenderError
 from seatlook.model import Camera, FloatArray, IntArray
 from seatlook.pbr.backend import offscreen_backend
-from seatlook.pbr.shading.kernels import surface
+from seatlook.pbr.kernels import surface
 
 FaceIds = npt.NDArray[np.int32]
 

@@ -10,11 +10,11 @@ import pytest
 from seatlook.errors import InputError
 from seatlook.model import Appearance, Rig, booth, bulb, sun
 from seatlook.pbr import ev100, lux_at_seat
+from seatlook.pbr.kernels.light import above_horizon, panorama_towards
 from seatlook.pbr.light.panorama import directions, irradiance_on, levels_of, shrunk, solid_angles
 from seatlook.pbr.light.rig import disc_points, white_of
 from seatlook.pbr.quality import TIERS, quality_within
 from seatlook.pbr.reflectance import brdf
-from seatlook.pbr.shading.kernels.light import above_horizon, panorama_towards
 from seatlook.pbr.shading.studio import Studio
 from support.reference.lit_sheets import GREY, above, flat, sheet
 

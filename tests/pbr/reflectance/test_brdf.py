@@ -8,6 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seatlook.model import Appearance
+from seatlook.pbr.kernels import brdf as kernel
+from seatlook.pbr.kernels.lookup import lookup_mean
+from seatlook.pbr.kernels.tables import coupling, fibres
 from seatlook.pbr.reflectance import brdf
 from seatlook.pbr.reflectance.tables import (
     compute_tables,
@@ -15,9 +18,6 @@ from seatlook.pbr.reflectance.tables import (
     load_tables,
     roughness_nodes,
 )
-from seatlook.pbr.shading.kernels import brdf as kernel
-from seatlook.pbr.shading.kernels.lookup import lookup_mean
-from seatlook.pbr.shading.kernels.tables import coupling, fibres
 from seatlook.pbr.shading.studio import NAP_NODES, pack_materials
 from support.reference.furnace import reflected
 

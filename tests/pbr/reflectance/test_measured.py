@@ -10,8 +10,8 @@ import pytest
 from seatlook.errors import InputError
 from seatlook.model import Appearance, Rig, TextureMaps, sun
 from seatlook.model.colour import srgb_decode
+from seatlook.pbr.kernels.measured import measured
 from seatlook.pbr.reflectance.measured import load_maps, mean_albedo
-from seatlook.pbr.shading.kernels.measured import measured
 from seatlook.pbr.shading.studio import Studio, pack_materials
 from support.reference.lit_sheets import above, flat, sheet
 

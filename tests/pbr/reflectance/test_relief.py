@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from seatlook.model import Appearance, TextureMaps
+from seatlook.pbr.kernels.grain import bilinear, fetch_bilinear, grain
+from seatlook.pbr.kernels.measured import measured
 from seatlook.pbr.reflectance.measured import load_maps
 from seatlook.pbr.reflectance.relief import MAPS, baked, load_textures, texture_index
-from seatlook.pbr.shading.kernels.grain import bilinear, fetch_bilinear, grain
-from seatlook.pbr.shading.kernels.measured import measured
 from seatlook.pbr.shading.studio import pack_materials
 
 

@@ -1,6 +1,7 @@
 """Small pictures kept in the tree: a change in how covers look must be seen and meant.
 
-``SEATLOOK_REGENERATE_GOLDEN=1 pytest tests/pbr/test_golden.py`` writes them anew; look at them.
+``SEATLOOK_REGENERATE_GOLDEN=1 pytest tests/pbr/shading/test_golden.py`` writes them anew; look at
+them.
 """
 
 from __future__ import annotations

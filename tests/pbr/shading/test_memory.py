@@ -26,7 +26,7 @@ from pathlib import Path
 import numpy as np
 from support.reference.lit_sheets import above, sheet
 from seatlook.model import Appearance, Rig, TextureMaps, bulb, sun
-from seatlook.pbr.studio import Studio
+from seatlook.pbr.shading.studio import Studio
 
 def held():
     pages = int(Path("/proc/self/statm").read_text().split()[1])

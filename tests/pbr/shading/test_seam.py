@@ -9,7 +9,7 @@ import pytest
 
 from seatlook.errors import InputError
 from seatlook.model import Points, Rig, Stitching, Thread, sun
-from seatlook.pbr.shading.kernels.stitch import relief
+from seatlook.pbr.kernels.stitch import relief
 from seatlook.pbr.shading.seam import pack_thread
 from seatlook.pbr.shading.studio import Studio
 from seatlook.pbr.shading.surface import drawn_surface

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from seatlook.pbr.kernels.brdf import D_GGX, brdf, view_of
+from seatlook.pbr.kernels.lookup import lookup_mean
+from seatlook.pbr.kernels.tables import coupling, fibres
 from seatlook.pbr.reflectance.tables import load_tables
-from seatlook.pbr.shading.kernels.brdf import D_GGX, brdf, view_of
-from seatlook.pbr.shading.kernels.lookup import lookup_mean
-from seatlook.pbr.shading.kernels.tables import coupling, fibres
 from seatlook.pbr.shading.studio import NAP_NODES, pack_materials
 
 

@@ -12,10 +12,10 @@ import os
 import numpy as np
 
 from seatlook.model import Appearance, Camera, Light, Rig
+from seatlook.pbr.kernels.brdf import MIN_ALPHA
 from seatlook.pbr.light.rig import sky_colour
 from seatlook.pbr.reflectance import brdf
 from seatlook.pbr.reflectance.brdf import COAT_F0
-from seatlook.pbr.shading.kernels.brdf import MIN_ALPHA
 from seatlook.pbr.shading.studio import Studio
 
 # Far enough for parallel light: the irradiance of a 0.3 m object differs by 0.3 %.

@@ -16,9 +16,9 @@ from numba import njit
 from seatlook.io.material import read_material
 from seatlook.model import Appearance, Camera, Rig, Solution, bulb, named_view, sun
 from seatlook.model.colour import srgb_encode
+from seatlook.pbr.kernels.grain import stroke
 from seatlook.pbr.light.rig import LUMINANCE, white_of
 from seatlook.pbr.reflectance.relief import load_textures
-from seatlook.pbr.shading.kernels.grain import stroke
 from seatlook.pbr.shading.studio import pack_materials
 from support.reference.lit_sheets import sheet
 from support.reference.path_tracer import Relief

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from seatlook.model import FloatArray, Light, Rig
+from seatlook.pbr.kernels.light import Lights
 from seatlook.pbr.light.panorama import cosine_mean, irradiance_on, levels_of
-from seatlook.pbr.shading.kernels.light import Lights
 
 # Luminance of linear sRGB (ITU-R BT.709).
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])

@@ -11,9 +11,9 @@ from PIL import ImageDraw, ImageFont
 from seatlook.errors import InputError, did_you_mean
 from seatlook.model import Camera, FloatArray, Solution
 from seatlook.model.colour import srgb_decode, srgb_encode
+from seatlook.pbr.kernels import colour
+from seatlook.pbr.kernels import surface as kernel
 from seatlook.pbr.picture import Picture
-from seatlook.pbr.shading.kernels import colour
-from seatlook.pbr.shading.kernels import surface as kernel
 from seatlook.pbr.shading.studio import Studio, eye_of, studio
 
 FACTOR = 2  # samples per pixel and axis

@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from seatlook.model import Appearance, FloatArray
+from seatlook.pbr.kernels.brdf import COAT_F0, MIN_ALPHA
+from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW
 from seatlook.pbr.reflectance.tables import load_tables
-from seatlook.pbr.shading.kernels.brdf import COAT_F0, MIN_ALPHA
-from seatlook.pbr.shading.kernels.lookup import ROUGHNESS_LOW
 
 
 def D_GGX(alpha_x: float, alpha_y: float, h: FloatArray) -> FloatArray:

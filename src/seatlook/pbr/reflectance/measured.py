@@ -11,7 +11,7 @@ import numpy.typing as npt
 from seatlook.model import Appearance, FloatArray, TextureMaps
 from seatlook.model.colour import srgb_decode
 from seatlook.model.texture import Pixels
-from seatlook.pbr.shading.kernels.measured import Measured
+from seatlook.pbr.kernels.measured import Measured
 
 Texels = npt.NDArray[np.float32]
 

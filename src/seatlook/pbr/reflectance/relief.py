@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from seatlook.model import Appearance, FloatArray, Solution, TextureMaps
 from seatlook.model.colour import srgb_encode
-from seatlook.pbr.shading.kernels.cells import two_nearest
-from seatlook.pbr.shading.kernels.grain import LEATHER, SUEDE, WEAVE, Textures
+from seatlook.pbr.kernels.cells import two_nearest
+from seatlook.pbr.kernels.grain import LEATHER, SUEDE, WEAVE, Textures
 
 SIZE = 1024
 CELLS = 64

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.model import FloatArray
-from seatlook.pbr.shading.kernels.brdf import Tables
-from seatlook.pbr.shading.kernels.lookup import ROUGHNESS_LOW
+from seatlook.pbr.kernels.brdf import Tables
+from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW
 
 _FILE = Path(__file__).with_name("tables.npz")
 ROUGHNESSES = 80
@@ -28,7 +28,7 @@ def compute_tables(grid: int = 256) -> Tables:
 
     ``numpy.savez_compressed(file, **compute_tables()._asdict())`` writes the shipped file.
     """
-    from seatlook.pbr.shading.kernels.tables import integrate
+    from seatlook.pbr.kernels.tables import integrate
 
     return Tables(*integrate(ROUGHNESSES, COSINES, grid))
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from seatlook.model import Appearance, FloatArray, Foam, IntArray
-from seatlook.pbr.shading.kernels.surface import Mesh
+from seatlook.pbr.kernels.surface import Mesh
 
 # Open-cell polyether, cream; judgement.
 FOAM = Appearance(albedo=np.array([0.62, 0.57, 0.42]), roughness=0.95, f0=0.02)

@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from seatlook.model import Camera, FloatArray, IntArray, Rig
 from seatlook.pbr.cache import Kept
+from seatlook.pbr.kernels import bvh, light, rays, shade
+from seatlook.pbr.kernels import specular_bounce as gloss
+from seatlook.pbr.kernels.light import Lights
 from seatlook.pbr.light.rig import pack_lights, sky_colour, sky_levels, sky_unhidden
 from seatlook.pbr.quality import Quality
-from seatlook.pbr.shading.kernels import bvh, light, rays, shade
-from seatlook.pbr.shading.kernels import specular_bounce as gloss
-from seatlook.pbr.shading.kernels.light import Lights
 from seatlook.pbr.shading.subdivision import boundary_edges
 from seatlook.pbr.shading.surface import Surface
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from seatlook.model import Cover, FloatArray, IntArray, Thread
-from seatlook.pbr.shading.kernels import stitch
+from seatlook.pbr.kernels import stitch
 from seatlook.pbr.shading.subdivision import Refined, boundary_edges
 
 # Distance [m] from a seam up to which its thread and groove are drawn.

@@ -15,6 +15,18 @@ from seatlook.errors import InputError, RenderError, did_you_mean
 from seatlook.model import Appearance, Camera, Light, Rig, Solution, Thread
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.cache import Kept
+from seatlook.pbr.kernels import (
+    bvh,
+    rays,
+    shade,
+    stitch,
+    surface,
+    tables,
+)
+from seatlook.pbr.kernels import (
+    coherent as alike,
+)
+from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.light.exposure import ev100
 from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_of
 from seatlook.pbr.picture import Image
@@ -24,18 +36,6 @@ from seatlook.pbr.reflectance.relief import load_textures, texture_index
 from seatlook.pbr.reflectance.tables import load_tables
 from seatlook.pbr.shading.foam import FOAM
 from seatlook.pbr.shading.indirect import Surroundings, camera_key
-from seatlook.pbr.shading.kernels import (
-    bvh,
-    rays,
-    shade,
-    stitch,
-    surface,
-    tables,
-)
-from seatlook.pbr.shading.kernels import (
-    coherent as alike,
-)
-from seatlook.pbr.shading.kernels.brdf import MATERIAL
 from seatlook.pbr.shading.seam import pack_thread
 from seatlook.pbr.shading.surface import Surface, drawn_surface
 

@@ -9,9 +9,9 @@ from scipy import sparse
 
 from seatlook.errors import RenderError
 from seatlook.model import FloatArray, IntArray, Solution
+from seatlook.pbr.kernels.surface import Mesh
 from seatlook.pbr.shading import seam
 from seatlook.pbr.shading.foam import with_foam
-from seatlook.pbr.shading.kernels.surface import Mesh
 from seatlook.pbr.shading.subdivision import Refined, sharp_corners, subdivide
 
 # Refinement stops below this edge length [m], about a pixel of the named views, or at this size.

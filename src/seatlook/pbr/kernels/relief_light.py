@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.brdf import (
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.brdf import (
     COAT_F0,
     GGX,
     D_nap,
@@ -14,8 +14,8 @@ from seatlook.pbr.shading.kernels.brdf import (
     lobe_of,
     sheen_share,
 )
-from seatlook.pbr.shading.kernels.light import above_horizon, parts_of, point_of, towards_point
-from seatlook.pbr.shading.kernels.relief_samples import (
+from seatlook.pbr.kernels.light import above_horizon, parts_of, point_of, towards_point
+from seatlook.pbr.kernels.relief_samples import (
     AGAIN,
     BASE,
     BASE_L,
@@ -48,7 +48,7 @@ from seatlook.pbr.shading.kernels.relief_samples import (
     layers_of,
     mean_of,
 )
-from seatlook.pbr.shading.kernels.surface import along, dot, unit
+from seatlook.pbr.kernels.surface import along, dot, unit
 
 
 @leaf()

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from seatlook.pbr.shading.kernels import bvh
+from seatlook.pbr.kernels import bvh
 
 
 def every_triangle(vertices, faces, origin, direction):

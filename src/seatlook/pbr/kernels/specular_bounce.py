@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.brdf import (
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.brdf import (
     COAT_F0,
     GGX,
     MIN_ALPHA,
@@ -17,13 +17,13 @@ from seatlook.pbr.shading.kernels.brdf import (
     lobe_of,
     view_of,
 )
-from seatlook.pbr.shading.kernels.bvh import new_stack
-from seatlook.pbr.shading.kernels.light import above_horizon, across, angle_of, arriving
-from seatlook.pbr.shading.kernels.noise import even
-from seatlook.pbr.shading.kernels.rays import ABOVE, DARK, OPEN, UNSENT, direction, face_met
-from seatlook.pbr.shading.kernels.shade import frame, towards_eye
-from seatlook.pbr.shading.kernels.surface import along, blend, cross, dot, minus, row, row_of, unit
-from seatlook.pbr.shading.kernels.tables import coupling_at
+from seatlook.pbr.kernels.bvh import new_stack
+from seatlook.pbr.kernels.light import above_horizon, across, angle_of, arriving
+from seatlook.pbr.kernels.noise import even
+from seatlook.pbr.kernels.rays import ABOVE, DARK, OPEN, UNSENT, direction, face_met
+from seatlook.pbr.kernels.shade import frame, towards_eye
+from seatlook.pbr.kernels.surface import along, blend, cross, dot, minus, row, row_of, unit
+from seatlook.pbr.kernels.tables import coupling_at
 
 # Widths (alpha) of the lobes along which rays go, whatever the material: polish and grain.
 _WIDTHS = (0.1, 0.35)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.lookup import ROUGHNESS_LOW, bilinear, cell, lookup, lookup_mean
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW, bilinear, cell, lookup, lookup_mean
 
 MIN_ALPHA = ROUGHNESS_LOW**2
 COAT_F0 = 0.04

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from seatlook.pbr.shading.kernels import leaf
+from seatlook.pbr.kernels import leaf
 
 _LOW = np.uint64(0xFFFFFFFF)
 _PRIMES = (np.uint64(73856093), np.uint64(19349663), np.uint64(83492791))

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.bvh import nearest, new_stack, occluded
-from seatlook.pbr.shading.kernels.light import SMALL, across, angle_of, arriving, panorama_towards
-from seatlook.pbr.shading.kernels.noise import even
-from seatlook.pbr.shading.kernels.surface import (
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.bvh import nearest, new_stack, occluded
+from seatlook.pbr.kernels.light import SMALL, across, angle_of, arriving, panorama_towards
+from seatlook.pbr.kernels.noise import even
+from seatlook.pbr.kernels.surface import (
     along,
     blend,
     cross,

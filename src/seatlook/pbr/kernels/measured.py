@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.brdf import MIN_ALPHA
-from seatlook.pbr.shading.kernels.grain import SHARP
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.brdf import MIN_ALPHA
+from seatlook.pbr.kernels.grain import SHARP
 
 
 class Measured(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from seatlook.pbr.shading.kernels import leaf
+from seatlook.pbr.kernels import leaf
 
 _BINS = 16
 _LEAF = 4

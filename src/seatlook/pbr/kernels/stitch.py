@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.surface import along, cross, dot, minus, row
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.surface import along, cross, dot, minus, row
 
 
 class Thread(NamedTuple):

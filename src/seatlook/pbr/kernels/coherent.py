@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from numba import njit
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.surface import blend, dot, meet, ray_through, row, unit
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.surface import blend, dot, meet, ray_through, row, unit
 
 # Cosine between normals of neighbouring samples that count as one: 2 degrees.
 _UNBENT = 0.9994

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.noise import smooth
-from seatlook.pbr.shading.kernels.prefetch import fetch
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.noise import smooth
+from seatlook.pbr.kernels.prefetch import fetch
 
 
 class Textures(NamedTuple):

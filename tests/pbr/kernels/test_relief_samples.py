@@ -10,14 +10,10 @@ import pytest
 from seatlook.errors import InputError
 from seatlook.io.material import read_material
 from seatlook.model import Appearance, Rig
-from seatlook.pbr.light.rig import pack_lights
-from seatlook.pbr.quality import Quality
-from seatlook.pbr.reflectance import brdf
-from seatlook.pbr.reflectance.tables import load_tables
-from seatlook.pbr.shading.kernels import brdf as kernel
-from seatlook.pbr.shading.kernels.light import above_horizon, disc_of
-from seatlook.pbr.shading.kernels.relief_light import brdf_facets, look_at_discs
-from seatlook.pbr.shading.kernels.relief_samples import (
+from seatlook.pbr.kernels import brdf as kernel
+from seatlook.pbr.kernels.light import above_horizon, disc_of
+from seatlook.pbr.kernels.relief_light import brdf_facets, look_at_discs
+from seatlook.pbr.kernels.relief_samples import (
     DISC_X,
     DISC_Y,
     MOST,
@@ -31,7 +27,11 @@ from seatlook.pbr.shading.kernels.relief_samples import (
     _upwards,
     layers_to_eye,
 )
-from seatlook.pbr.shading.kernels.tables import coupling, coupling_at, fibres, layers
+from seatlook.pbr.kernels.tables import coupling, coupling_at, fibres, layers
+from seatlook.pbr.light.rig import pack_lights
+from seatlook.pbr.quality import Quality
+from seatlook.pbr.reflectance import brdf
+from seatlook.pbr.reflectance.tables import load_tables
 from seatlook.pbr.shading.studio import NAP_NODES, NODES, pack_materials
 
 COUNT = 16

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.surface import along, cross, dot, minus, row, unit
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.surface import along, cross, dot, minus, row, unit
 
 # Angular radius [rad] below which a light is a point for shading.
 SMALL = 0.01

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from seatlook.pbr.shading.kernels import leaf
+from seatlook.pbr.kernels import leaf
 
 ROUGHNESS_LOW = 0.08
 

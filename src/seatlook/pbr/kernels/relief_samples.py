@@ -9,15 +9,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.grain import (
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.grain import (
     WEAVE,
     bilinear,
     fetch_bilinear,
     nearest_level,
     stroke,
 )
-from seatlook.pbr.shading.kernels.surface import along, dot, minus, row, row_of, unit
+from seatlook.pbr.kernels.surface import along, dot, minus, row, row_of, unit
 
 # Facets of one sample along each side at most.
 MOST = 8

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from seatlook.model import Camera, Thread
-from seatlook.pbr.shading.kernels import stitch
-from seatlook.pbr.shading.kernels.coherent import alike
+from seatlook.pbr.kernels import stitch
+from seatlook.pbr.kernels.coherent import alike
 from seatlook.pbr.shading.seam import pack_thread
 from seatlook.pbr.shading.studio import Studio, eye_of
 from support.reference.lit_sheets import sheet

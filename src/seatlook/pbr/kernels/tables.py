@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.brdf import (
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.brdf import (
     D_Charlie,
     V_Neubelt,
     V_SmithGGXCorrelated,
@@ -15,7 +15,7 @@ from seatlook.pbr.shading.kernels.brdf import (
     means_of,
     rows_of,
 )
-from seatlook.pbr.shading.kernels.lookup import ROUGHNESS_LOW, lookup, lookup_mean
+from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW, lookup, lookup_mean
 
 
 @leaf()

@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from seatlook.pbr.shading.kernels import leaf
-from seatlook.pbr.shading.kernels.brdf import Tables, albedo_towards, brdf, brdf_isotropic, view_of
-from seatlook.pbr.shading.kernels.grain import Textures, grain, holes
-from seatlook.pbr.shading.kernels.light import (
+from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, brdf_isotropic, view_of
+from seatlook.pbr.kernels.grain import Textures, grain, holes
+from seatlook.pbr.kernels.light import (
     above_horizon,
     angle_of,
     arriving,
@@ -21,16 +21,16 @@ from seatlook.pbr.shading.kernels.light import (
     point_of,
     towards_point,
 )
-from seatlook.pbr.shading.kernels.measured import Measured, measured
-from seatlook.pbr.shading.kernels.relief_light import brdf_facets, look_at_discs
-from seatlook.pbr.shading.kernels.relief_samples import (
+from seatlook.pbr.kernels.measured import Measured, measured
+from seatlook.pbr.kernels.relief_light import brdf_facets, look_at_discs
+from seatlook.pbr.kernels.relief_samples import (
     ROOM,
     faceted,
     layers_to_eye,
     mirrored_facets,
     spread,
 )
-from seatlook.pbr.shading.kernels.stitch import (
+from seatlook.pbr.kernels.stitch import (
     Thread,
     away_from_seam,
     reach,
@@ -38,7 +38,7 @@ from seatlook.pbr.shading.kernels.stitch import (
     seam_at,
     tilt,
 )
-from seatlook.pbr.shading.kernels.surface import (
+from seatlook.pbr.kernels.surface import (
     along,
     blend,
     cross,
@@ -49,7 +49,7 @@ from seatlook.pbr.shading.kernels.surface import (
     row_of,
     unit,
 )
-from seatlook.pbr.shading.kernels.tables import coupling_at
+from seatlook.pbr.kernels.tables import coupling_at
 
 # Pixels across the squares in which a picture is shaded.
 _TILE = 16
