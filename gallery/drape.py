@@ -19,9 +19,10 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 from seatlook.model import Cover, Curve, Solution, Stage
-from seatlook.solver import solve
+from seatlook.solver import SolverSettings, solve
 from support.covers import cover, foam, sheet, sphere
 
+SETTINGS = SolverSettings(method="newton", dt=0.04, iterations=10)
 SIDE, RADIUS, THICKNESS, YOUNG = 0.5, 0.1, 5e-4, 30e3
 
 
@@ -54,7 +55,7 @@ def main(sizes: list[int]) -> None:
     s: Solution | None = None
     for vertices in sizes:
         square = cloth(vertices)
-        s = solve(square, dt=0.04, iterations=10, method="newton", start=s)
+        s = solve(square, settings=SETTINGS, start=s)
         spent = time.process_time() - clock
         print(f"{len(square.rest)} vertices: {s.status} {s.reason}; {spent:.1f} CPU s so far, "
               f"{s.figures['iterations']:.0f} iterations", flush=True)  # fmt: skip

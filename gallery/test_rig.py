@@ -25,7 +25,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
 from seatlook.model import Curve, Fabric  # noqa: E402
-from seatlook.solver import solve_sheet  # noqa: E402
+from seatlook.solver import Load, Sheet, SheetSettings, Support, solve_sheet  # noqa: E402
 from support import (  # noqa: E402
     fabrics,
     meshes,
@@ -36,6 +36,7 @@ BACK = {
     "warp_unloading": Curve(strain=[0.0, 0.01, 0.03], stiffness=[1500.0, 6000.0, 12000.0]),
     "weft_unloading": Curve(strain=[0.0, 0.02, 0.04], stiffness=[900.0, 2500.0, 6000.0]),
 }
+TIGHT = SheetSettings(tolerance=1e-8)
 Row = tuple[str, float, float, float]  # test, abscissa, input, solver
 
 
@@ -71,15 +72,15 @@ def tension(axis: int) -> list[Row]:
     fixed[np.flatnonzero(low)[0], 1 - axis] = True
     name = ("warp", "weft")[axis]
     out, back = getattr(fabric, name), getattr(fabric, f"{name}_unloading")
-    x, peaks, peak = None, None, 0.5 * (1.08**2 - 1.0)
+    before, peak = None, 0.5 * (1.08**2 - 1.0)
     start = strain_at(back, tension_at(out, peak))
     for stretch in (*np.linspace(1.01, 1.08, 8), *np.linspace(1.074, 1.05, 5)):
         target = flat.copy()
         target[:, axis] *= stretch
-        solved = solve_sheet(X, T, fabric, positions=x, fixed=fixed, prescribed=target, peaks=peaks,
-                             tolerance=1e-8, strict=True)  # fmt: skip
-        came_back = x is not None and x[high, axis][0] > stretch
-        x, peaks = solved.positions, solved.peaks
+        solved = solve_sheet(Sheet(X, T, fabric), start=before, settings=TIGHT, strict=True,
+                             support=Support(fixed=fixed, prescribed=target))  # fmt: skip
+        came_back = before is not None and before.positions[high, axis][0] > stretch
+        before = solved
         force = solved.reactions[high, axis].sum()
         E = 0.5 * (stretch**2 - 1.0)
         given = tension_at(back, E - peak + start) if came_back else tension_at(out, E)
@@ -98,8 +99,8 @@ def picture_frame() -> list[Row]:
         target = flat.copy()
         target[:, 0] = X[:, 0] * np.cos(0.5 * angle) + X[:, 1] * np.sin(0.5 * angle)
         target[:, 1] = X[:, 0] * np.sin(0.5 * angle) + X[:, 1] * np.cos(0.5 * angle)
-        solved = solve_sheet(X, T, fabric, fixed=fixed, prescribed=target, tolerance=1e-8,
-                             strict=True)  # fmt: skip
+        solved = solve_sheet(Sheet(X, T, fabric), settings=TIGHT, strict=True,
+                             support=Support(fixed=fixed, prescribed=target))  # fmt: skip
         shear = np.sin(angle)
         stress = float(solved.sheet.membrane.stress(solved.positions)[:, 2].mean())
         rows.append(("picture frame", shear, tension_at(fabric.shear, shear), stress))
@@ -120,8 +121,8 @@ def bias_extension() -> list[Row]:
         F = np.outer(along[:2], along[:2]) * (a - b) + b * np.eye(2)
         target = flat.copy()
         target[:, :2] = rest @ F.T
-        solved = solve_sheet(rest, T, fabric, fixed=rim, prescribed=target, tolerance=1e-8,
-                             strict=True)  # fmt: skip
+        solved = solve_sheet(Sheet(rest, T, fabric), settings=TIGHT, strict=True,
+                             support=Support(fixed=rim, prescribed=target))  # fmt: skip
         right = (X[:, 0] > 1 - 1e-9) & (X[:, 1] > 1e-9) & (X[:, 1] < 1 - 1e-9)
         ends = (X[:, 0] > 1 - 1e-9) & ~right
         # The rim's sides carry nothing, so that corner forces belong to the pulled edge.
@@ -171,7 +172,7 @@ def bending() -> list[Row]:
     middle = np.abs(X[T].mean(axis=1)[:, 0] - 0.5) < 0.2
     for k in np.linspace(0.25, 2.0, 8):
         x = np.column_stack([np.sin(k * X[:, 0]) / k, X[:, 1], (1 - np.cos(k * X[:, 0])) / k])
-        solved = solve_sheet(X, T, fabric, positions=x, fixed=ends, strict=True)
+        solved = solve_sheet(Sheet(X, T, fabric), start=x, support=Support(fixed=ends), strict=True)
         kappa = solved.sheet.curvatures(solved.positions)[middle, 0, 0].mean()
         rows.append(("pure bending", k, -k, kappa * fabric.bending_warp))
     return rows
@@ -183,8 +184,8 @@ def cantilever() -> list[Row]:
     X, T = meshes.rectangle("uns", 1.0, 0.2, 0.05)
     fabric = fabrics.isotropic(12.0 / 0.02**2, 1.0, density=1.0, thickness=0.02)
     for gamma in (0.5, 1.0, 2.0, 5.0, 10.0, 20.0):
-        solved = solve_sheet(X, T, fabric, clamped=X[:, 0] < 1e-9, gravity=(0, 0, -gamma),
-                             strict=True)  # fmt: skip
+        solved = solve_sheet(Sheet(X, T, fabric), support=Support(clamped=X[:, 0] < 1e-9),
+                             load=Load(gravity=(0, 0, -gamma)), strict=True)  # fmt: skip
         tip = solved.positions[X[:, 0] > 1 - 1e-9, 2].mean()
         rows.append(("cantilever", gamma, -hanging_tip(gamma, 0.02)[1], -tip))
     return rows

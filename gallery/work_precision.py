@@ -30,10 +30,10 @@ import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
+from seatlook.solver import Load, Sheet, SheetSettings, Support, solve_sheet  # noqa: E402
 from seatlook.solver.element.loads import DeadLoad  # noqa: E402
 from seatlook.solver.methods.newton import Potential  # noqa: E402
 from seatlook.solver.process.statics import equilibrium  # noqa: E402
-from seatlook.solver.sheet import solve_sheet  # noqa: E402
 from support import (  # noqa: E402
     fabrics,
     meshes,
@@ -118,7 +118,10 @@ def strip_error(method: str, edges: int) -> float:
     """The product's element by one of its methods."""
     X, T, fabric = strip(edges, "uns")
     solved = solve_sheet(
-        X, T, fabric, clamped=X[:, 0] < 1e-9, gravity=(0, 0, -GAMMA), method=method, tolerance=5e-4
+        Sheet(X, T, fabric),
+        support=Support(clamped=X[:, 0] < 1e-9),
+        load=Load(gravity=(0, 0, -GAMMA)),
+        settings=SheetSettings(method=method, tolerance=5e-4),
     )
     return tip_error(X, solved.positions) if solved.converged else float("nan")
 

@@ -30,9 +30,6 @@ KNOWN_WIDE = {
     "seatlook.io.lsdyna.element_tables.select",
     "seatlook.pbr.maps.face_map.render_map",
     "seatlook.shells.states.wrinkle_states",
-    "seatlook.solver.methods.explicit.advance",
-    "seatlook.solver.sheet.solve_sheet",
-    "seatlook.solver.solve.solve",
 }
 HEAVY = ("numba", "scipy", "vtk", "vtkmodules", "pyvista", "trimesh")
 

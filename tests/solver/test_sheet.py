@@ -3,7 +3,7 @@ import pytest
 
 from seatlook.errors import InputError
 from seatlook.model import Curve, Fabric
-from seatlook.solver.sheet import SheetError, solve_sheet
+from seatlook.solver import Load, Sheet, SheetError, SheetSettings, Support, solve_sheet
 from support import fabrics, meshes
 from support.reference.elastica import hanging_tip
 
@@ -13,7 +13,11 @@ def cantilever(kind, gamma, slenderness, edges, **options):
     X, T = meshes.rectangle(kind, 1.0, 0.2, 1.0 / edges)
     fabric = fabrics.isotropic(12.0 / slenderness**2, 1.0, density=1.0, thickness=slenderness)
     solved = solve_sheet(
-        X, T, fabric, clamped=X[:, 0] < 1e-9, gravity=(0, 0, -gamma), strict=True, **options
+        Sheet(X, T, fabric),
+        support=Support(clamped=X[:, 0] < 1e-9),
+        load=Load(gravity=(0, 0, -gamma)),
+        settings=SheetSettings(**options),
+        strict=True,
     )
     tip = solved.positions[X[:, 0] > 1 - 1e-9].mean(axis=0)
     x, z = hanging_tip(gamma, slenderness)
@@ -45,12 +49,9 @@ def test_stretch_by_the_rim_is_uniform_inside(kind):
     rim = ((X < 1e-9) | (X > 1 - 1e-9)).any(axis=1)
     flat = np.pad(X, ((0, 0), (0, 1)))
     solved = solve_sheet(
-        X,
-        T,
-        fabrics.isotropic(poisson=0.3),
-        fixed=rim,
-        prescribed=flat * [1.05, 1.01, 1.0],
-        tolerance=1e-10,
+        Sheet(X, T, fabrics.isotropic(poisson=0.3)),
+        support=Support(fixed=rim, prescribed=flat * [1.05, 1.01, 1.0]),
+        settings=SheetSettings(tolerance=1e-10),
         strict=True,
     )
     mid = solved.sheet.strains(solved.positions)[1]
@@ -77,7 +78,10 @@ def test_stress_and_contraction_of_a_free_strip_follow_the_curve():
     fixed[np.flatnonzero(left)[0], 1] = True
     flat = np.pad(X, ((0, 0), (0, 1)))
     solved = solve_sheet(
-        X, T, fabric, fixed=fixed, prescribed=flat * [1.08, 1, 1], tolerance=1e-10, strict=True
+        Sheet(X, T, fabric),
+        support=Support(fixed=fixed, prescribed=flat * [1.08, 1, 1]),
+        settings=SheetSettings(tolerance=1e-10),
+        strict=True,
     )
     E = solved.sheet.strains(solved.positions)[1]
     e1, e2 = E[:, 0, 0].mean(), E[:, 1, 1].mean()
@@ -98,12 +102,10 @@ def test_membrane_under_pressure_bulges_by_the_closed_form():
     X, T = meshes.rectangle("uns", 0.4, 0.1, 0.01)
     rim = ((X < 1e-9) | (X.max(axis=0) - 1e-9 < X)).any(axis=1)
     solved = solve_sheet(
-        X,
-        T,
-        fabrics.isotropic(1000.0, 1e-7),
-        fixed=rim,
-        pressure=200.0,
-        tolerance=1e-6,
+        Sheet(X, T, fabrics.isotropic(1000.0, 1e-7)),
+        support=Support(fixed=rim),
+        load=Load(pressure=200.0),
+        settings=SheetSettings(tolerance=1e-6),
         strict=True,
     )
     middle = (np.abs(X - [0.2, 0.05]) < [0.02, 0.006]).all(axis=1)
@@ -126,16 +128,14 @@ def test_not_converged_is_raised_with_the_last_state():
 def test_wrong_mask_is_refused(mask):
     X, T = meshes.rectangle("right", 1.0, 1.0, 0.5)
     with pytest.raises(InputError, match=r"fixed: got .*, expected bool \(9,\) or \(9, 3\)"):
-        solve_sheet(X, T, fabrics.isotropic(), fixed=mask)
-
-
-def test_no_steps_are_refused():
-    X, T = meshes.rectangle("right", 1.0, 1.0, 0.5)
-    with pytest.raises(InputError, match="steps: got 0, expected 1 or more"):
-        solve_sheet(X, T, fabrics.isotropic(), steps=0)
+        solve_sheet(Sheet(X, T, fabrics.isotropic()), support=Support(fixed=mask))
 
 
 def test_pressure_on_a_sheet_with_a_free_rim_is_refused():
     X, T = meshes.rectangle("right", 1.0, 1.0, 0.5)
     with pytest.raises(InputError, match="pressure: got 8 rim vertices that can move"):
-        solve_sheet(X, T, fabrics.isotropic(), fixed=(X == 0.5).all(axis=1), pressure=1.0)
+        solve_sheet(
+            Sheet(X, T, fabrics.isotropic()),
+            support=Support(fixed=(X == 0.5).all(axis=1)),
+            load=Load(pressure=1.0),
+        )

@@ -6,7 +6,7 @@ import pytest
 
 from seatlook import model
 from seatlook.errors import InputError, InvertedElementError
-from seatlook.solver import ConvergenceError, solve
+from seatlook.solver import ConvergenceError, SolverSettings, solve
 from seatlook.solver.process.process import Process
 from support.covers import (
     cover,
@@ -93,7 +93,7 @@ def test_block_on_an_incline(mu):
     drop = model.Stage(name="drop", start=0.0, end=0.4)
     c = cover([(X, T, x @ turn.T)], foam=tilted, stages=[drop], h=0.02, thickness=0.001)
     states = []
-    s = solve(c, snapshot=states.append, iterations=100)
+    s = solve(c, snapshot=states.append, settings=SolverSettings(iterations=100))
     way = np.mean((states[0].positions - c.positions) @ turn[:, 0])
     if mu > np.tan(angle):
         assert s.status == "converged"
@@ -167,7 +167,7 @@ def test_strip_over_a_cylinder_presses_as_a_belt_does():
         bending_twist=1e-5,
     )
     s = solve(c, strict=True)
-    process = Process(c, dt=0.02, iterations=1)
+    process = Process(c)
     process.resume(s, time=s.history["time"][-1])
     process.begin(rest=True)
     process.record()
@@ -263,11 +263,11 @@ def test_what_is_not_converged_says_so(monkeypatch):
     driver = importlib.import_module("seatlook.solver.solve")
     monkeypatch.setattr(driver, "_ROUNDS", 1)
     monkeypatch.setattr(driver, "_REST_ITERATIONS", 2)
-    s = solve(laid(), iterations=1)
+    s = solve(laid(), settings=SolverSettings(iterations=1))
     assert s.status == "not converged"
     assert "out-of-balance force" in s.reason
     with pytest.raises(ConvergenceError, match="out-of-balance") as caught:
-        solve(laid(), iterations=1, strict=True)
+        solve(laid(), settings=SolverSettings(iterations=1), strict=True)
     assert caught.value.solution.positions.shape == s.positions.shape
 
 

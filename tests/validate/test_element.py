@@ -5,8 +5,8 @@ import pytest
 from scipy.sparse.linalg import eigsh
 
 from seatlook.model import Curve, Fabric
+from seatlook.solver import Load, Sheet, SheetSettings, Support, solve_sheet
 from seatlook.solver.element.elastic import ElasticSheet
-from seatlook.solver.sheet import solve_sheet
 from support import fabrics, meshes
 from support.reference.elastica import hanging_tip
 from support.reference.rolled import missed
@@ -37,7 +37,11 @@ def hanging(kind, gamma, slenderness, edges, width=0.2):
     X, T = meshes.rectangle(kind, 1.0, width, 1.0 / edges)
     fabric = fabrics.isotropic(12.0 / slenderness**2, 1.0, density=1.0, thickness=slenderness)
     solved = solve_sheet(
-        X, T, fabric, clamped=X[:, 0] < 1e-9, gravity=(0, 0, -gamma), tolerance=1e-5, strict=True
+        Sheet(X, T, fabric),
+        support=Support(clamped=X[:, 0] < 1e-9),
+        load=Load(gravity=(0, 0, -gamma)),
+        settings=SheetSettings(tolerance=1e-5),
+        strict=True,
     )
     tip = solved.positions[X[:, 0] > 1 - 1e-9].mean(axis=0)
     x, z = hanging_tip(gamma, slenderness)
@@ -81,8 +85,13 @@ def test_cantilever_with_a_load_at_its_end(kind, report):
     loads = np.zeros((len(X), 3))
     loads[end[:-1], 2] += load * half
     loads[end[1:], 2] += load * half
-    solved = solve_sheet(X, T, fabric, clamped=X[:, 0] < 1e-9, loads=loads, tolerance=1e-6,
-                         strict=True)  # fmt: skip
+    solved = solve_sheet(
+        Sheet(X, T, fabric),
+        support=Support(clamped=X[:, 0] < 1e-9),
+        load=Load(forces=loads),
+        settings=SheetSettings(tolerance=1e-6),
+        strict=True,
+    )
     tip = solved.positions[end].mean(axis=0)
     report(f"{kind}: deflection {tip[2]:.4f} of 6.698, shortening {length - tip[0]:.4f} of 3.286")
     assert tip[2] == pytest.approx(6.698, rel=3e-3)
@@ -189,13 +198,11 @@ def test_bending_anisotropy(kind, degrees, report):
     v = np.array([np.cos(a) ** 2, np.sin(a) ** 2, np.cos(a) * np.sin(a)])
     bend = 1 / (v @ np.linalg.solve(fabric.bending_matrix, v))
     solved = solve_sheet(
-        X,
-        T,
-        fabric,
-        positions=flat(Y),
-        clamped=Y[:, 0] < 1e-9,
-        gravity=(0, 0, -10.0),
-        tolerance=1e-5,
+        Sheet(X, T, fabric),
+        start=flat(Y),
+        support=Support(clamped=Y[:, 0] < 1e-9),
+        load=Load(gravity=(0, 0, -10.0)),
+        settings=SheetSettings(tolerance=1e-5),
         strict=True,
     )
     end = np.flatnonzero(Y[:, 0] > 1 - 1e-9)
@@ -219,13 +226,10 @@ def test_curves_come_back_at_any_cut(kind, degrees, report):
     rim = ((X < 1e-9) | (X > 1 - 1e-9)).any(axis=1)
     stretch = np.array([[1.04, 0.03], [0.0, 1.01]])
     solved = solve_sheet(
-        rest,
-        T,
-        fabric,
-        positions=flat(rest),
-        fixed=rim,
-        prescribed=flat(rest @ stretch.T),
-        tolerance=1e-9,
+        Sheet(rest, T, fabric),
+        start=flat(rest),
+        support=Support(fixed=rim, prescribed=flat(rest @ stretch.T)),
+        settings=SheetSettings(tolerance=1e-9),
         strict=True,
     )
     E = 0.5 * (stretch.T @ stretch - np.eye(2))

@@ -12,7 +12,7 @@ from seatlook.assembly import assemble
 from seatlook.chain.evaluation import wrinkle_map
 from seatlook.errors import InputError
 from seatlook.model import Scene, Solution
-from seatlook.solver import foam_wavelength, solve
+from seatlook.solver import SolverSettings, foam_wavelength, solve
 from seatlook.solver.solve import Progress
 from seatlook.wrinkle import ZoneRow, zone_table
 
@@ -120,7 +120,11 @@ def solve_to(scene: Scene, tolerance: float, *, progress: Progress | None = None
     """
     chosen = plan(scene, tolerance)
     fine, coarse = (
-        solve(assemble(scene, element_size=size), dt=chosen.dt, progress=progress)
+        solve(
+            assemble(scene, element_size=size),
+            settings=SolverSettings(dt=chosen.dt),
+            progress=progress,
+        )
         for size in (chosen.element_size, _RATIO * chosen.element_size)
     )
     rows = [zone_table(solution, wrinkle_map(scene, solution)) for solution in (fine, coarse)]

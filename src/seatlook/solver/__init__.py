@@ -2,13 +2,19 @@
 
 from seatlook.solver.foam.contact import foam_wavelength
 from seatlook.solver.methods.explicit import Explicit, UnstableStepError
-from seatlook.solver.sheet import SheetError, solve_sheet
+from seatlook.solver.process.settings import SheetSettings, SolverSettings
+from seatlook.solver.sheet import Load, Sheet, SheetError, Support, solve_sheet
 from seatlook.solver.solve import ConvergenceError, solve
 
 __all__ = [
     "ConvergenceError",
     "Explicit",
+    "Load",
+    "Sheet",
     "SheetError",
+    "SheetSettings",
+    "SolverSettings",
+    "Support",
     "UnstableStepError",
     "foam_wavelength",
     "solve",

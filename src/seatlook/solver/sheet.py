@@ -1,4 +1,4 @@
-"""Equilibrium of a bare sheet: any flat mesh, fabric, supports and loads in one call."""
+"""Equilibrium of a bare sheet: any flat mesh, fabric, support and load in one call."""
 
 from __future__ import annotations
 
@@ -14,10 +14,87 @@ from seatlook.model import Fabric, FloatArray, IntArray
 from seatlook.solver.element.elastic import ElasticSheet
 from seatlook.solver.element.loads import DeadLoad, Pressure
 from seatlook.solver.energy import Energy
-from seatlook.solver.methods.choice import MethodName, method_of
-from seatlook.solver.methods.explicit import Explicit, UnstableStepError
+from seatlook.solver.methods.choice import method_of
+from seatlook.solver.methods.explicit import UnstableStepError
 from seatlook.solver.methods.newton import Equilibrium, Potential
+from seatlook.solver.process.settings import SheetSettings
 from seatlook.solver.process.statics import equilibrium
+
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sheet:
+    """A flat sheet.
+
+    Parameters
+    ----------
+    rest : (n, 2) float64 [m]     flat, warp along axis 0
+    faces : (m, 3) int64          counter-clockwise
+    fabric : what it is made of
+    """
+
+    rest: FloatArray
+    faces: IntArray
+    fabric: Fabric
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Support:
+    """What holds a sheet.
+
+    Parameters
+    ----------
+    fixed : (n,) or (n, 3) bool      vertices, or single components, that are held
+    clamped : (n,) bool              fixed vertices between which free edges keep their direction
+    prescribed : (n, 3) float64 [m]  where fixed components are taken to
+    foundation : further energies that carry the sheet
+    """
+
+    fixed: BoolArray | None = None
+    clamped: BoolArray | None = None
+    prescribed: FloatArray | None = None
+    foundation: Sequence[Energy] = ()
+
+    def held(self, count: int) -> BoolArray:
+        """Return the components (count, 3) that are held.
+
+        Raises
+        ------
+        InputError   a mask of another shape
+        """
+        held = np.zeros((count, 3), dtype=bool)
+        for name, mask in (("fixed", self.fixed), ("clamped", self.clamped)):
+            if mask is None:
+                continue
+            mask = np.asarray(mask)
+            if mask.dtype != bool or mask.shape not in ((count,), (count, 3)):
+                raise InputError.single(
+                    name,
+                    got=f"{mask.dtype} {mask.shape}",
+                    expected=f"bool ({count},) or ({count}, 3)",
+                )
+            held |= mask if mask.ndim == 2 else mask[:, None]
+        return held
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Load:
+    """What pulls and presses on a sheet.
+
+    Parameters
+    ----------
+    forces : (n, 3) float64 [N]      of constant direction
+    pressure : float [Pa]            along the face normals; needs a rim that is held all round
+    gravity : (3,) [m/s2]            acts on the fabric's mass
+    """
+
+    forces: FloatArray | None = None
+    pressure: float = 0.0
+    gravity: Sequence[float] = (0.0, 0.0, 0.0)
+
+
+_FREE, _UNLOADED, _DEFAULT = Support(), Load(), SheetSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,47 +134,20 @@ class SheetError(SolverError):
 
 
 def solve_sheet(
-    rest: FloatArray,
-    faces: IntArray,
-    fabric: Fabric,
+    sheet: Sheet,
     *,
-    positions: FloatArray | None = None,
-    fixed: npt.NDArray[np.bool_] | None = None,
-    clamped: npt.NDArray[np.bool_] | None = None,
-    prescribed: FloatArray | None = None,
-    loads: FloatArray | None = None,
-    pressure: float = 0.0,
-    gravity: Sequence[float] = (0.0, 0.0, 0.0),
-    supports: Sequence[Energy] = (),
-    peaks: FloatArray | None = None,
-    steps: int = 1,
-    method: MethodName | Explicit = "newton",
-    tolerance: float = 1e-3,
-    max_iterations: int | None = None,
+    support: Support = _FREE,
+    load: Load = _UNLOADED,
+    start: FloatArray | SheetSolution | None = None,
+    settings: SheetSettings = _DEFAULT,
     strict: bool = False,
 ) -> SheetSolution:
     """Find the stable equilibrium of a sheet under loads and supports.
 
     Parameters
     ----------
-    rest : (n, 2) float64 [m]; faces : (m, 3) int64   flat, counter-clockwise, warp along axis 0
-    positions : (n, 3) float64 [m]   where the search starts; the flat sheet if not given
-    fixed : (n,) or (n, 3) bool      vertices, or single components, that are held
-    clamped : (n,) bool              fixed vertices between which free edges keep their direction
-    prescribed : (n, 3) float64 [m]  where fixed components are taken to
-    loads : (n, 3) float64 [N]       forces of constant direction
-    pressure : float [Pa]            along the face normals; needs a rim that is held all round
-    gravity : (3,) [m/s2]            acts on the fabric's mass
-    supports : further energies, such as a foundation
-    peaks : (m, 2) float64 [1]       of an earlier solution, where the fabric has unloading curves
-    steps : loads and prescribed movements are applied in this many equal steps; strains count as
-        history only at the end of each
-    method : "newton" (with a softened membrane first where the sheet is thin), "lbfgs" with a
-        prefactored matrix, or "explicit" (damped, with masses that make all waves equally slow;
-        ``Explicit(time_step=...)`` moves in real time with the sheet's own mass).
-        With each the exact Hessian is looked at last: an equilibrium that is unstable is left.
-    tolerance : residual that counts as converged
-    max_iterations : 300 for Newton, 10,000 for L-BFGS, 4,000 times 50 steps for explicit
+    start : (n, 3) float64 [m], or an earlier solution of the sheet, with the history of its strains
+        where the fabric has unloading curves; the flat sheet if not given
     strict : raise instead of returning what has not converged
 
     Raises
@@ -116,50 +166,72 @@ def solve_sheet(
     >>> faces = np.array([[0, 1, 2], [0, 2, 3]])
     >>> pull = np.array([[0, 0, 0], [0.5, 0, 0], [0.5, 0, 0], [0, 0, 0]])
     >>> end = np.array([True, False, False, True])
-    >>> solved = solve_sheet(rest, faces, fabric, fixed=end, loads=pull)
+    >>> solved = solve_sheet(Sheet(rest, faces, fabric), support=Support(fixed=end),
+    ...                      load=Load(forces=pull))
     >>> round(float(solved.sheet.strains(solved.positions)[1][0, 0, 0]), 4)
     0.0099
     """
-    chosen = method_of(method)
-    start = np.pad(np.asarray(rest, dtype=np.float64), ((0, 0), (0, 1)))
-    if positions is not None:
-        start = np.array(positions, dtype=np.float64, order="C")
-    held = _held(len(rest), fixed, clamped)
-    panel = np.zeros(len(faces), dtype=np.int64)
-    sheet = ElasticSheet(rest, faces, panel, [fabric], clamped=clamped, positions=start)
+    first, peaks = _start(sheet, start)
+    held = support.held(len(first))
+    panel = np.zeros(len(sheet.faces), dtype=np.int64)
+    elastic = ElasticSheet(
+        sheet.rest, sheet.faces, panel, [sheet.fabric], clamped=support.clamped, positions=first
+    )
     if peaks is not None:
-        sheet.membrane.remember(peaks)
-    target = start if prescribed is None else np.where(held, prescribed, start)
-    force = np.outer(sheet.mass, gravity)
-    if loads is not None:
-        force += loads
-    if pressure:
-        _check_rim(sheet, held)
-    if steps < 1:
-        raise InputError.single("steps", got=steps, expected="1 or more")
-    x = start
-    for share in np.arange(1, steps + 1) / steps:
-        others: list[Energy] = [DeadLoad(share * force), *supports]
-        if pressure:
-            others.append(Pressure(sheet.faces, share * pressure))
-        potential = Potential(sheet.energies, others, ~held)
-        x = _moved(sheet, x, start + share * (target - start), held)
+        elastic.membrane.remember(peaks)
+    if load.pressure:
+        _check_rim(elastic, held)
+    target = first if support.prescribed is None else np.where(held, support.prescribed, first)
+    state = Equilibrium(first, np.inf, np.zeros(0), 0, -1, 0)
+    for share in np.arange(1, settings.steps + 1) / settings.steps:
+        others = _outer(elastic, load, share, support.foundation)
+        potential = Potential(elastic.energies, others, ~held)
+        x = _moved(elastic, state.x, first + share * (target - first), held)
         try:
-            found = equilibrium(
-                sheet, potential, x, chosen, tolerance=tolerance, max_iterations=max_iterations
+            state = equilibrium(
+                elastic,
+                potential,
+                x,
+                method_of(settings.method),
+                tolerance=settings.tolerance,
+                max_iterations=settings.max_iterations,
             )
         except UnstableStepError as error:
-            found = Equilibrium(x, np.inf, np.zeros(0), 0, -1, 0)
-            raise SheetError(str(error), _report(sheet, found, potential, tolerance)) from error
-        x = found.x
-        sheet.membrane.wear(x)
-    solution = _report(sheet, found, potential, tolerance)
+            state = Equilibrium(x, np.inf, np.zeros(0), 0, -1, 0)
+            last = _report(elastic, state, potential, settings.tolerance)
+            raise SheetError(str(error), last) from error
+        elastic.membrane.wear(state.x)
+    solution = _report(elastic, state, potential, settings.tolerance)
     if strict and not solution.converged:
         raise SheetError(solution.reason, solution)
     return solution
 
 
-def _check_rim(sheet: ElasticSheet, held: npt.NDArray[np.bool_]) -> None:
+def _start(
+    sheet: Sheet, start: FloatArray | SheetSolution | None
+) -> tuple[FloatArray, FloatArray | None]:
+    """Positions (n, 3) in which the search starts, and the largest strains before."""
+    if start is None:
+        return np.pad(np.asarray(sheet.rest, dtype=np.float64), ((0, 0), (0, 1))), None
+    if isinstance(start, SheetSolution):
+        return start.positions.copy(), start.peaks
+    return np.array(start, dtype=np.float64, order="C"), None
+
+
+def _outer(
+    sheet: ElasticSheet, load: Load, share: float, foundation: Sequence[Energy]
+) -> list[Energy]:
+    """Energies of a share of the load, and of the foundation."""
+    force = np.outer(sheet.mass, load.gravity)
+    if load.forces is not None:
+        force += load.forces
+    energies: list[Energy] = [DeadLoad(share * force), *foundation]
+    if load.pressure:
+        energies.append(Pressure(sheet.faces, share * load.pressure))
+    return energies
+
+
+def _check_rim(sheet: ElasticSheet, held: BoolArray) -> None:
     """Refuse a pressure that has no potential."""
     rim = np.unique(sheet.edges.ends[sheet.edges.free])
     loose = int((~held[rim]).any(axis=1).sum())
@@ -169,25 +241,7 @@ def _check_rim(sheet: ElasticSheet, held: npt.NDArray[np.bool_]) -> None:
         )
 
 
-def _held(
-    count: int, fixed: npt.NDArray[np.bool_] | None, clamped: npt.NDArray[np.bool_] | None
-) -> npt.NDArray[np.bool_]:
-    held = np.zeros((count, 3), dtype=bool)
-    for name, mask in (("fixed", fixed), ("clamped", clamped)):
-        if mask is None:
-            continue
-        mask = np.asarray(mask)
-        if mask.dtype != bool or mask.shape not in ((count,), (count, 3)):
-            raise InputError.single(
-                name, got=f"{mask.dtype} {mask.shape}", expected=f"bool ({count},) or ({count}, 3)"
-            )
-        held |= mask if mask.ndim == 2 else mask[:, None]
-    return held
-
-
-def _moved(
-    sheet: ElasticSheet, x: FloatArray, target: FloatArray, held: npt.NDArray[np.bool_]
-) -> FloatArray:
+def _moved(sheet: ElasticSheet, x: FloatArray, target: FloatArray, held: BoolArray) -> FloatArray:
     """Take held components to ``target``; the free ones follow as a soap film would."""
     move = np.where(held, target - x, 0.0)
     if not move.any():
@@ -203,23 +257,23 @@ def _moved(
 
 
 def _report(
-    sheet: ElasticSheet, found: Equilibrium, potential: Potential, tolerance: float
+    sheet: ElasticSheet, state: Equilibrium, potential: Potential, tolerance: float
 ) -> SheetSolution:
-    _, gradient = potential.value(found.x)
+    _, gradient = potential.value(state.x)
     reasons = []
-    if not found.residual <= tolerance:
-        reasons.append(f"residual {found.residual:.2e} above {tolerance:.2e}")
-    elif not found.stable:
-        reasons.append(f"unstable: {found.downhill} directions lead downhill")
+    if not state.residual <= tolerance:
+        reasons.append(f"residual {state.residual:.2e} above {tolerance:.2e}")
+    elif not state.stable:
+        reasons.append(f"unstable: {state.downhill} directions lead downhill")
     return SheetSolution(
-        positions=found.x,
+        positions=state.x,
         sheet=sheet,
         reactions=np.where(potential.free, 0.0, gradient),
         converged=not reasons,
         reason=", ".join(reasons),
-        residual=found.residual,
-        iterations=found.iterations,
-        kicks=found.kicks,
-        energy=found.energy,
+        residual=state.residual,
+        iterations=state.iterations,
+        kicks=state.kicks,
+        energy=state.energy,
         peaks=sheet.membrane.peaks,
     )

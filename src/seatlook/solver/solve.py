@@ -12,9 +12,8 @@ import numpy as np
 from seatlook._version import __version__
 from seatlook.errors import InputError, SolverError
 from seatlook.model import Cover, FloatArray, Solution, stage_units
-from seatlook.solver.methods.choice import MethodName, method_of
-from seatlook.solver.methods.explicit import Explicit
 from seatlook.solver.process.process import Process, Record
+from seatlook.solver.process.settings import DEFAULT, SolverSettings
 from seatlook.solver.process.stages import Step, check_stages, schedule
 from seatlook.solver.process.verdict import figures, reasons, unrest
 
@@ -48,14 +47,12 @@ class Progress(Protocol):
 def solve(
     cover: Cover,
     *,
-    strict: bool = False,
-    progress: Progress | None = None,
+    settings: SolverSettings = DEFAULT,
     start: Solution | None = None,
+    progress: Progress | None = None,
     snapshot: Callable[[Solution], None] | None = None,
     shape: Callable[[str, float, FloatArray], None] | None = None,
-    method: MethodName | Explicit = "lbfgs",
-    dt: float = 0.02,
-    iterations: int = 8,
+    strict: bool = False,
 ) -> Solution:
     """Carry out the stages of a cover and let it come to rest.
 
@@ -65,21 +62,15 @@ def solve(
 
     Parameters
     ----------
-    strict : raise when the result is not converged
-    progress : called after every step
+    settings : method, time step and iterations
     start : earlier solution; the process goes on after its stage. From another mesh of the same
         panels only the shape is taken over, by quadratics: a coarse solution at rest saves a fine
         mesh the way there
+    progress : called after every step
     snapshot : called with the state at the end of every stage
     shape : called with stage, time [s] and positions (n, 3) [m] after every time step; the
         positions are those the solver goes on with, so copy what is kept
-    method : "lbfgs" with prefactored scalar matrices; "newton" with the projected Hessian of chords
-        and hinges factored every few iterations, for limp sheets that turn far; both look at rest
-        for a direction that leads downhill and leave an unstable balance; "explicit" central
-        differences with the time step their mesh allows, or ``Explicit(time_step=...,
-        scale_mass=True)``
-    dt : float [s]      time step; what lags is updated once in it
-    iterations : int    most iterations in a time step
+    strict : raise when the result is not converged
 
     Returns
     -------
@@ -98,8 +89,8 @@ def solve(
     """
     check_stages(cover)
     clock = time.process_time()
-    process = Process(cover, dt=dt, iterations=iterations, method=method_of(method))
-    plan = schedule(cover.stages, dt)
+    process = Process(cover, settings)
+    plan = schedule(cover.stages, settings.dt)
     ahead = plan if start is None else _after(plan, start, cover)
     if start is not None:
         done = len(plan) - len(ahead)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from seatlook import model
 from seatlook.errors import InputError
 from seatlook.model import Curve
-from seatlook.solver import solve, solve_sheet
+from seatlook.solver import Sheet, SheetSettings, Support, solve, solve_sheet
 from seatlook.solver.element.elastic import ElasticSheet
 from support import fabrics, meshes
 from support.covers import cover, row, sheet, vertices_as_points
@@ -146,17 +146,21 @@ def test_strip_returns_along_its_unloading_curve(axis):
     fixed[:, 2] = True
     fixed[low | high, axis] = True
     fixed[np.flatnonzero(low)[0], 1 - axis] = True
-    peak, peaks, x = 0.06, None, None
+    peak, state = 0.06, None
     tension = float(loading.tension(peak))
     e = np.linspace(0.0, 0.06, 60001)
     start = np.interp(tension, unloading.tension(e), e)
     for strain in (peak, peak - 0.004, peak - 0.008, peak - 0.002, 0.07):
         target = np.pad(X, ((0, 0), (0, 1)))
         target[:, axis] *= np.sqrt(1 + 2 * strain)
-        found = solve_sheet(X, T, fabric, positions=x, fixed=fixed, prescribed=target, peaks=peaks,
-                            tolerance=1e-8, strict=True)  # fmt: skip
-        x, peaks = found.positions, found.peaks
-        force = found.reactions[high, axis].sum() / np.sqrt(1 + 2 * strain)
+        state = solve_sheet(
+            Sheet(X, T, fabric),
+            start=state,
+            support=Support(fixed=fixed, prescribed=target),
+            settings=SheetSettings(tolerance=1e-8),
+            strict=True,
+        )
+        force = state.reactions[high, axis].sum() / np.sqrt(1 + 2 * strain)
         back = unloading.tension(max(strain - peak + start, 0.0))
         wanted = loading.tension(strain) if strain >= peak else back
         assert force == pytest.approx(float(wanted), rel=5e-3)

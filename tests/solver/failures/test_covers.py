@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatlook import model
-from seatlook.solver import solve
+from seatlook.solver import SolverSettings, solve
 from support.covers import cover, flat_foam, row, sheet, vertices_as_points
 
 pytestmark = pytest.mark.failure
@@ -100,7 +100,10 @@ def over_an_edge():
 
 def test_limp_sheet_over_an_edge_comes_to_rest_in_folds():
     """By either method, in the same shape within a hundredth of its energy, and stable."""
-    first, second = (honest(solve(over_an_edge(), method=method)) for method in ("lbfgs", "newton"))
+    first, second = (
+        honest(solve(over_an_edge(), settings=SolverSettings(method=method)))
+        for method in ("lbfgs", "newton")
+    )
     for s in (first, second):
         assert s.status == "converged", s.reason
         assert s.positions[:, 2].min() < -0.1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatlook.errors import InvertedElementError
-from seatlook.solver import solve_sheet
+from seatlook.solver import Sheet, solve_sheet
 from support import fabrics, meshes
 from support.reference.buckling import threshold
 
@@ -43,4 +43,4 @@ def test_inverted_triangles_are_refused():
     middle = np.argmin(np.linalg.norm(X - [0.5, 0.25], axis=1))
     X[middle] += [0.25, 0.0]
     with pytest.raises(InvertedElementError, match="turned over or have no area"):
-        solve_sheet(X, T, fabrics.isotropic())
+        solve_sheet(Sheet(X, T, fabrics.isotropic()))

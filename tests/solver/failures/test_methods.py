@@ -4,11 +4,20 @@ import numpy as np
 import pytest
 
 from seatlook import model
-from seatlook.solver import Explicit, solve, solve_sheet
+from seatlook.solver import (
+    Explicit,
+    Load,
+    Sheet,
+    SheetError,
+    SheetSettings,
+    SolverSettings,
+    Support,
+    UnstableStepError,
+    solve,
+    solve_sheet,
+)
 from seatlook.solver.element.elastic import ElasticSheet
-from seatlook.solver.methods.explicit import UnstableStepError
 from seatlook.solver.methods.newton import Potential, newton
-from seatlook.solver.sheet import SheetError
 from support import fabrics, meshes
 from support.covers import cover, flat_foam, sheet
 from support.reference.counter_examples import position_based
@@ -32,7 +41,7 @@ def test_explicit_cover_above_its_time_step():
     drop = model.Stage(name="drop", start=0.0, end=0.1)
     c = cover([(X, T, x)], foam=flat_foam(), stages=[drop], h=0.04)
     with pytest.raises(UnstableStepError, match="the mesh allows"):
-        solve(c, method=Explicit(time_step=1e-2))
+        solve(c, settings=SolverSettings(method=Explicit(time_step=1e-2)))
 
 
 @pytest.mark.parametrize("thickness", [1e-1, 1e-2, 1e-3, 1e-4])
@@ -82,12 +91,13 @@ def arch_states(method):
     ends = (X[:, 0] < 1e-9) | (X[:, 0] > 1 - 1e-9)
     pushed = np.pad(X * [0.99, 1.0], ((0, 0), (0, 1)))
     pushed[:, 2] = 0.05 * np.sin(np.pi * X[:, 0])
-    options = {"fixed": ends, "method": method, "tolerance": 1e-3}
-    arch = solve_sheet(X, T, fabric, positions=pushed, strict=True, **options)
+    body = Sheet(X, T, fabric)
+    options = {"support": Support(fixed=ends), "settings": SheetSettings(method=method)}
+    arch = solve_sheet(body, start=pushed, strict=True, **options)
     crown = np.abs(X[:, 0] - 0.5) < 0.01
     loads = np.zeros((len(X), 3))
     loads[crown, 2] = -6.0 / crown.sum()
-    down = solve_sheet(X, T, fabric, positions=arch.positions, loads=loads, **options)
+    down = solve_sheet(body, start=arch, load=Load(forces=loads), **options)
     return arch.positions[crown, 2].mean(), down.positions[crown, 2].mean(), down
 
 
@@ -110,6 +120,12 @@ def test_flat_sheet_past_its_buckling_load_is_unstable_and_leaves():
     stayed = newton(Potential(body.energies, (), free), flat, tolerance=1e-8)
     assert stayed.downhill > 0
     for method in ("newton", "lbfgs", "explicit"):
-        left = solve_sheet(X, T, fabric, positions=flat, fixed=ends, method=method, strict=True)
+        left = solve_sheet(
+            Sheet(X, T, fabric),
+            start=flat,
+            support=Support(fixed=ends),
+            settings=SheetSettings(method=method),
+            strict=True,
+        )
         assert left.kicks >= 1
         assert abs(left.positions[:, 2]).max() > 0.05

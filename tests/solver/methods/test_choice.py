@@ -5,16 +5,20 @@ import pytest
 
 from seatlook import model
 from seatlook.errors import InputError
-from seatlook.solver import Explicit, solve, solve_sheet
-from seatlook.solver.methods.explicit import (
-    DampedDynamics,
+from seatlook.solver import (
+    Explicit,
+    Load,
+    Sheet,
+    SheetError,
+    SheetSettings,
+    SolverSettings,
+    Support,
     UnstableStepError,
-    advance,
-    least_mass,
-    stable_step,
+    solve,
+    solve_sheet,
 )
+from seatlook.solver.methods.explicit import DampedDynamics, Motion, least_mass, stable_step
 from seatlook.solver.process.process import Process
-from seatlook.solver.sheet import SheetError
 from support import fabrics, meshes
 from support.covers import cover, flat_foam, sheet
 from support.reference.elastica import hanging_tip
@@ -22,13 +26,16 @@ from support.reference.elastica import hanging_tip
 METHODS = ("newton", "lbfgs", "explicit")
 
 
-def strip(method, *, gamma=1.0, slenderness=0.02, edges=10, **options):
+def strip(method, *, gamma=1.0, slenderness=0.02, edges=10, strict=False, **options):
     """Hanging strip of length 1 and how far its tip is from the elastica's."""
     X, T = meshes.rectangle("uns", 1.0, 0.2, 1.0 / edges)
     fabric = fabrics.isotropic(12.0 / slenderness**2, 1.0, density=1.0, thickness=slenderness)
-    clamped = X[:, 0] < 1e-9
     solved = solve_sheet(
-        X, T, fabric, clamped=clamped, gravity=(0, 0, -gamma), method=method, **options
+        Sheet(X, T, fabric),
+        support=Support(clamped=X[:, 0] < 1e-9),
+        load=Load(gravity=(0, 0, -gamma)),
+        settings=SheetSettings(method=method, **options),
+        strict=strict,
     )
     tip = solved.positions[X[:, 0] > 1 - 1e-9].mean(axis=0)
     x, z = hanging_tip(gamma, slenderness)
@@ -49,7 +56,13 @@ def test_every_method_leaves_the_flat_state(method):
     fabric = fabrics.isotropic(1e4, 1e-2)
     ends = (X[:, 0] < 1e-9) | (X[:, 0] > 1 - 1e-9)
     flat = np.pad(X * [0.99, 1.0], ((0, 0), (0, 1)))
-    solved = solve_sheet(X, T, fabric, positions=flat, fixed=ends, method=method, strict=True)
+    solved = solve_sheet(
+        Sheet(X, T, fabric),
+        start=flat,
+        support=Support(fixed=ends),
+        settings=SheetSettings(method=method),
+        strict=True,
+    )
     assert solved.kicks >= 1
     amplitude = 2 / np.pi * np.sqrt(0.01 - np.pi**2 * 1e-2 / 1e4)
     assert abs(solved.positions[:, 2]).max() == pytest.approx(amplitude, rel=0.03)
@@ -82,7 +95,7 @@ def test_mass_is_scaled_for_a_given_step_only():
 
 def test_least_mass_makes_any_step_stable():
     X, T = meshes.rectangle("sliver", 1.0, 0.3, 0.1)
-    process = Process(cover([(X, T, np.pad(X, ((0, 0), (0, 1))))], h=0.1), dt=0.02, iterations=1)
+    process = Process(cover([(X, T, np.pad(X, ((0, 0), (0, 1))))], h=0.1))
     hessian = process._static.hessian(process.state, definite=True)
     assert stable_step(hessian, least_mass(hessian, 1e-3)) >= 1e-3
 
@@ -94,9 +107,9 @@ def oscillator(dt, steps=2000, **options):
         np.multiply(x, 4.0, out=out)
         return 2.0 * float((x * x).sum())
 
-    x, v = np.array([[1.0, 0.0, 0.0]]), np.zeros((1, 3))
-    advance(gradient, x, v, np.ones((1, 3)), dt=dt, steps=steps, **options)
-    return x, v
+    motion = Motion(np.array([[1.0, 0.0, 0.0]]), np.zeros((1, 3)), np.ones((1, 3)))
+    motion.advance(gradient, dt=dt, steps=steps, **options)
+    return motion.x, motion.v
 
 
 def test_central_differences_up_to_their_limit_and_no_further():
@@ -122,7 +135,7 @@ def laid(**change):
 
 
 def test_hessian_of_the_state_is_the_derivative_of_its_gradient():
-    process = Process(laid(), dt=0.02, iterations=1)
+    process = Process(laid())
     process.x[:, 2] = -0.001 + 0.0002 * np.sin(60.0 * process.x[:, 0])
     process.begin(rest=True)
     process._lag()
@@ -141,16 +154,16 @@ def test_hessian_of_the_state_is_the_derivative_of_its_gradient():
 def test_cover_comes_to_the_same_rest_by_every_method():
     implicit = solve(laid(), strict=True)
     for method in ("newton", Explicit(time_step=2e-4, scale_mass=True)):
-        other = solve(laid(), method=method, strict=True)
+        other = solve(laid(), settings=SolverSettings(method=method), strict=True)
         np.testing.assert_allclose(other.positions[:, 2], implicit.positions[:, 2], atol=2e-5)
 
 
 def test_cover_above_the_explicit_time_step_is_raised():
     with pytest.raises(UnstableStepError, match="the mesh allows"):
-        solve(laid(), method=Explicit(time_step=5e-3))
+        solve(laid(), settings=SolverSettings(method=Explicit(time_step=5e-3)))
 
 
-def test_relaxation_refuses_to_add_mass_that_was_given():
+def test_damped_dynamics_refuse_to_add_mass_that_was_given():
     mass = np.full((3, 3), 1.0)
     fixed = DampedDynamics((3, 3), Explicit(time_step=0.1), mass)
     assert fixed._masses(None, np.zeros((3, 3))) is mass

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_array, diags_array
 
+from seatlook.solver import SolverSettings
 from seatlook.solver.methods.factor import Factor
 from seatlook.solver.methods.lbfgs import Potential
 from seatlook.solver.methods.stability import downhill
@@ -43,7 +44,7 @@ def test_one_negative_eigenvalue_is_found(lift):
 
 @pytest.mark.parametrize("method", ["lbfgs", "newton"])
 def test_a_flat_cover_past_its_buckling_load_is_pushed_out_of_its_plane(method):
-    process = Process(cover([sheet(0.2, 0.06, 0.02)], h=0.02), dt=0.02, iterations=1, method=method)
+    process = Process(cover([sheet(0.2, 0.06, 0.02)], h=0.02), SolverSettings(method=method))
     assert not process.downhill()
     process.x[:, 0] *= 0.98
     flat = process._static.value(process.state, np.zeros_like(process.state))
@@ -56,7 +57,7 @@ def test_a_flat_cover_past_its_buckling_load_is_pushed_out_of_its_plane(method):
 def test_a_cover_on_foam_is_unstable_from_its_buckling_load_on(compression, unstable):
     """A rectangle of 0.2 x 0.1 m pressed 0.02 mm into the foam, between rigid ends."""
     rectangle = sheet(0.2, 0.1, 0.01, z=0.0005, at=(-0.1, -0.05))
-    process = Process(cover([rectangle], foam=flat_foam(0.4), h=0.01), dt=0.02, iterations=1)
+    process = Process(cover([rectangle], foam=flat_foam(0.4), h=0.01))
     process.begin(rest=True)
     process.x[:, 0] *= 1.0 - compression
     process.x[:, 2] -= 2e-5

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatlook import model
-from seatlook.solver import solve_sheet
+from seatlook.solver import Load, Sheet, SheetSettings, Support, solve_sheet
 from seatlook.solver.methods.explicit import stable_step
 from support import meshes
 
@@ -22,8 +22,12 @@ def hanging(kind="uns", *, edges=8, thickness=0.02, stiffness_ratio=1.0, stretch
         bending_weft=1.0,
         bending_twist=0.5,
     )
-    clamped = X[:, 0] < 1e-9
-    return X, solve_sheet(X, T, fabric, clamped=clamped, gravity=(0, 0, -1.0), **options)
+    return X, solve_sheet(
+        Sheet(X, T, fabric),
+        support=Support(clamped=X[:, 0] < 1e-9),
+        load=Load(gravity=(0, 0, -1.0)),
+        settings=SheetSettings(**options),
+    )
 
 
 def explicit_limit(**options):

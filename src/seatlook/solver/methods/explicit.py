@@ -7,7 +7,7 @@ shortest wave grow without bound. That is seen in the potential, and raised.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -106,46 +106,51 @@ class EnergyWatch:
         return bool(energy - self._top <= scale)
 
 
-def advance(
-    gradient: Gradient,
-    x: FloatArray,
-    v: FloatArray,
-    mass: FloatArray,
-    *,
-    dt: float,
-    steps: int,
-    damping: float = 0.0,
-    watch: EnergyWatch | None = None,
-) -> None:
-    """Move ``x`` [m] and ``v`` [m/s], of half a step before, in place by ``steps`` steps.
+@dataclass(slots=True)
+class Motion:
+    """What moves under a potential.
 
     Parameters
     ----------
-    gradient : fills its second argument with the gradient [N] at the first, returns the energy [J]
-    mass : of the shape of ``x`` [kg], 0 where nothing moves
-    damping : float [1/s]   share of the velocity lost per second
+    x, v : of one shape [m], [m/s]   moved in place; ``v`` is that of half a step before
+    mass : of their shape [kg]       0 where nothing moves
     watch : of the stretches of motion before
-
-    Raises
-    ------
-    UnstableStepError   the energy rises; ``x`` and ``v`` are those of the beginning
     """
-    pull, kept = np.zeros_like(x), (x.copy(), v.copy())
-    drag = 0.5 * damping * dt
-    push = np.divide(dt / (1.0 + drag), mass, out=np.zeros_like(mass), where=mass > 0.0)
-    watch = EnergyWatch() if watch is None else watch
-    with np.errstate(over="ignore", invalid="ignore"):
-        for step in range(steps):
-            energy = gradient(x, pull)
-            v *= (1.0 - drag) / (1.0 + drag)
-            v -= push * pull
-            if step == 0:
-                watch.begin(energy, 0.5 * float((mass * v * v).sum()))
-            if not watch.sound(energy):
-                np.copyto(x, kept[0])
-                np.copyto(v, kept[1])
-                raise UnstableStepError(f"energy grew without bound in steps of {dt:.3g} s")
-            x += dt * v
+
+    x: FloatArray
+    v: FloatArray
+    mass: FloatArray
+    watch: EnergyWatch = field(default_factory=EnergyWatch)
+
+    def advance(self, gradient: Gradient, *, dt: float, steps: int, damping: float = 0.0) -> None:
+        """Go on by ``steps`` steps of ``dt`` [s].
+
+        Parameters
+        ----------
+        gradient : fills its second argument with the gradient [N] at the first, returns the energy
+            [J]
+        damping : float [1/s]   share of the velocity lost per second
+
+        Raises
+        ------
+        UnstableStepError   the energy rises; ``x`` and ``v`` are those of the beginning
+        """
+        x, v, mass = self.x, self.v, self.mass
+        pull, start = np.zeros_like(x), (x.copy(), v.copy())
+        drag = 0.5 * damping * dt
+        push = np.divide(dt / (1.0 + drag), mass, out=np.zeros_like(mass), where=mass > 0.0)
+        with np.errstate(over="ignore", invalid="ignore"):
+            for step in range(steps):
+                energy = gradient(x, pull)
+                v *= (1.0 - drag) / (1.0 + drag)
+                v -= push * pull
+                if step == 0:
+                    self.watch.begin(energy, 0.5 * float((mass * v * v).sum()))
+                if not self.watch.sound(energy):
+                    np.copyto(x, start[0])
+                    np.copyto(v, start[1])
+                    raise UnstableStepError(f"energy grew without bound in steps of {dt:.3g} s")
+                x += dt * v
 
 
 class Integrator:
@@ -176,9 +181,9 @@ class Integrator:
     def run(self, potential: Potential, x: FloatArray, span: float) -> int:
         """Move ``x`` in place through ``span`` [s]; return the number of steps."""
         steps = max(1, round(span / self.dt))
+        motion = Motion(x, self.velocity, self.mass, self._watch)
         try:
-            advance(potential.value, x, self.velocity, self.mass,
-                    dt=self.dt, steps=steps, damping=self.damping, watch=self._watch)  # fmt: skip
+            motion.advance(potential.value, dt=self.dt, steps=steps, damping=self.damping)
         except UnstableStepError as error:
             limit = self._limit(_stiffest(potential, x), self._own.ravel() > 0.0)
             raise _explained(error, limit) from None
@@ -233,25 +238,23 @@ class DampedDynamics:
     ) -> Descent:
         """Lower the potential in place of ``x``; no matrix is factored, ``factor`` is not used."""
         del factor
-        value, v, damping = potential.value(x, self.gradient), np.zeros_like(x), 0.0
-        mass, watch = self._masses(potential, x), EnergyWatch()
+        value, damping = potential.value(x, self.gradient), 0.0
+        motion = Motion(x, np.zeros_like(x), self._masses(potential, x))
         for iteration in range(iterations):
             if done(self.gradient):
                 return Descent(value, iteration, self.CHUNK * iteration, stalled=False)
             if iteration % self._RENEW == self._RENEW - 1:
-                mass = self._masses(potential, x)
+                motion.mass = self._masses(potential, x)
             start, pull = x.copy(), self.gradient.copy()
             try:
-                advance(potential.value, x, v, mass,
-                        dt=self._dt, steps=self.CHUNK, damping=damping, watch=watch)  # fmt: skip
+                motion.advance(potential.value, dt=self._dt, steps=self.CHUNK, damping=damping)
             except UnstableStepError as error:
                 self._more_mass(potential, x, error)
-                mass, watch = self._masses(potential, x), EnergyWatch()
-                v.fill(0.0)
+                motion = Motion(x, np.zeros_like(x), self._masses(potential, x))
                 continue
             value = potential.value(x, self.gradient)
             way = x - start
-            inertia = float((mass * way * way).sum())
+            inertia = float((motion.mass * way * way).sum())
             stiffness = float((way * (self.gradient - pull)).sum())
             damping = 2.0 * np.sqrt(max(stiffness, 0.0) / inertia) if inertia > 0.0 else 0.0
         return Descent(value, iterations, self.CHUNK * iterations, stalled=False)

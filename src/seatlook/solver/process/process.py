@@ -18,12 +18,13 @@ from seatlook.solver.energy import Energy
 from seatlook.solver.foam.contact import settled_rows
 from seatlook.solver.foam.foundation import Foundation
 from seatlook.solver.kernels.lbfgs import largest_row
-from seatlook.solver.methods.choice import Method, minimiser
+from seatlook.solver.methods.choice import Method, method_of, minimiser
 from seatlook.solver.methods.explicit import Explicit, Integrator
 from seatlook.solver.methods.factor import Factor, Preconditioner, Renewed, SplitFactor
 from seatlook.solver.methods.lbfgs import Potential
 from seatlook.solver.methods.stability import downhill
 from seatlook.solver.process.nearest import NearestHessian
+from seatlook.solver.process.settings import DEFAULT, SolverSettings
 from seatlook.solver.process.stages import Step
 from seatlook.solver.process.state import OfPositions, StatePotential, masses
 from seatlook.solver.process.ties import Ties
@@ -75,15 +76,11 @@ class Process:
     Parameters
     ----------
     cover : what is made
-    dt : float [s]
-    iterations : most iterations in one time step
-    method : how each step is minimised, or integrated
+    settings : how each step is minimised, or integrated
     """
 
-    def __init__(
-        self, cover: Cover, *, dt: float, iterations: int, method: Method = "lbfgs"
-    ) -> None:
-        self.cover, self.dt, self.iterations = cover, dt, iterations
+    def __init__(self, cover: Cover, settings: SolverSettings = DEFAULT) -> None:
+        self.cover, self.dt, self.iterations = cover, settings.dt, settings.iterations
         fabrics = [material.fabric for material in cover.materials]
         self.sheet = ElasticSheet(cover.rest, cover.faces, cover.panel, fabrics, hem=cover.hem)
         self.panel = np.zeros(len(cover.rest), dtype=np.int64)
@@ -92,7 +89,7 @@ class Process:
         self._bending_in_factor = _stiffness_ratio(fabrics, cover.element_size) > _STIFF_BENDING
         self._mass: FloatArray = np.array(self.sheet.mass, dtype=np.float64)
         self.gravity = Gravity(self._mass)
-        self.inertia = Inertia(self._mass, dt)
+        self.inertia = Inertia(self._mass, self.dt)
         self.ties = Ties(cover, tension[self.panel] / cover.element_size)
         self.foundation: Foundation | None = None
         n = len(cover.rest)
@@ -109,11 +106,11 @@ class Process:
         np.copyto(self.x, cover.positions)
         self.v = np.zeros_like(self.x)
         self.time = 0.0
-        self.method = method
-        self._minimiser = minimiser(method, self.state.shape)
+        self.method: Method = method_of(settings.method)
+        self._minimiser = minimiser(self.method, self.state.shape)
         self._factor: Preconditioner | None = None
         self._nearest: NearestHessian | None = None
-        if method == "newton":
+        if self.method == "newton":
             self._nearest = NearestHessian(self.sheet, cover.positions, self.ties.pattern())
         self._integrator: Integrator | None = None
         self._taut, self._evaluations, self._fresh = _TAUT, 0, True
