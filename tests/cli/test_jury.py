@@ -78,9 +78,9 @@ def test_a_file_that_is_none_is_named_and_the_others_count(folder, capsys):
     bad = folder / "votes-bad.json"
     bad.write_text('{"schema": 1')
     assert fit(folder, "--json") == 0
-    said = capsys.readouterr()
-    assert f"{bad}:1: file: got" in said.err
-    assert len(json.loads(said.out)["questions"]["wrinkles"]["judges"]) == 6
+    printed = capsys.readouterr()
+    assert f"{bad}:1: file: got" in printed.err
+    assert len(json.loads(printed.out)["questions"]["wrinkles"]["judges"]) == 6
 
 
 def test_without_a_vote_nothing_is_fitted(folder, capsys):

@@ -42,17 +42,17 @@ def test_a_search_needs_a_folder_for_its_charts(capsys):
 @pytest.mark.render
 def test_without_a_result_it_says_how_to_make_one(scene, capsys):
     assert run(["score", str(scene)]) == 2
-    said = capsys.readouterr().err
-    assert "result.npz: got no such file" in said
-    assert f"seatlook solve {scene} --out" in said
+    printed = capsys.readouterr().err
+    assert "result.npz: got no such file" in printed
+    assert f"seatlook solve {scene} --out" in printed
 
 
 def test_limits_on_the_score_are_read_and_none_on_a_seam(scene):
     text = scene.read_text()
     scene.write_text(text + LIMITS)
     limits = io.load_scene(scene).limits
-    found = {(limit.zone, limit.measure): limit.maximum for limit in limits}
-    assert found == {("A", "vwi"): 0.001, ("INSERT interior", "vwi"): 1e6}
+    maxima = {(limit.zone, limit.measure): limit.maximum for limit in limits}
+    assert maxima == {("A", "vwi"): 0.001, ("INSERT interior", "vwi"): 1e6}
     scene.write_text(text + '\n[accept."seam INSERT-REAR"]\nequivalent_height_mm = 0.1\n')
     line = len(scene.read_text().splitlines())
     with pytest.raises(InputError) as error:
@@ -72,10 +72,10 @@ def test_a_missed_limit_ends_with_one_and_all_is_left_in_the_folder(scene, capsy
     capsys.readouterr()
     words = ["--texture", "black-leather", "--texture", "suede", "--rig", "sun"]
     assert run(["score", str(scene), *words, "--out", str(out), "--json"]) == 1
-    said = capsys.readouterr()
-    assert "A: vwi is " in said.err
-    assert "INSERT interior" not in said.err
-    data = json.loads(said.out)
+    printed = capsys.readouterr()
+    assert "A: vwi is " in printed.err
+    assert "INSERT interior" not in printed.err
+    data = json.loads(printed.out)
     assert [(cell["texture"], cell["rig"]) for cell in data["cells"]] == [
         ("black-leather", "sun"),
         ("suede", "sun"),

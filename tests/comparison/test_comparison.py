@@ -115,7 +115,7 @@ def test_changes_are_named_once_and_long_heads_are_clipped_with_a_title(comparis
         comparison, variants=MappingProxyType({"pvc": first, long: replace(second, name=long)})
     )
     page = write_comparison(named, tmp_path).read_text()
-    assert "Changes are from pvc." in page
+    assert "Change: difference from pvc." in page
     assert f'title="change: {long}"><span class="clip">change: {long}</span>' in page
     assert f"{long} - pvc" not in page
 

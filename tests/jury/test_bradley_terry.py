@@ -96,7 +96,7 @@ def test_many_sets_at_once_are_each_alone():
         )
 
 
-def test_an_item_that_always_wins_stays_finite_and_is_told():
+def test_an_item_that_always_wins_stays_finite_and_is_reported():
     wins, _ = choices(np.zeros(5), 10)
     wins[0, 1:], wins[1:, 0] = 10, 0
     assert groups(wins) == [[0], [1, 2, 3, 4]]

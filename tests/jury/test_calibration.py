@@ -38,10 +38,10 @@ def people(questionnaire, truth, judges=25, seed=0):
 
 def test_gain_and_exponent_come_back(questionnaire):
     vwi, other = visible()
-    found = calibrate(
+    result = calibrate(
         people(questionnaire, 1.5 * vwi**0.5, 120), measured(questionnaire, vwi, other)
     )
-    link = found.links["vwi"]
+    link = result.links["vwi"]
     assert link.exponent == pytest.approx(0.5, abs=0.08)
     lead = link.gain * (vwi[-1] ** link.exponent - vwi[0] ** link.exponent)
     assert lead == pytest.approx(1.5 * (vwi[-1] ** 0.5 - vwi[0] ** 0.5), rel=0.08)
@@ -49,23 +49,23 @@ def test_gain_and_exponent_come_back(questionnaire):
 
 def test_the_score_people_follow_wins(questionnaire):
     vwi, other = visible()
-    found = calibrate(people(questionnaire, 1.5 * vwi**0.5), measured(questionnaire, vwi, other))
-    assert found.held_out["vwi"] > max(found.held_out["log_ratio"], CHANCE)
-    assert found.advantage[1] > 0
-    assert found.verdict == "VWI predicts better than the log ratio"
-    assert found.geometries == ("cover 0", "cover 1", "cover 2")
+    result = calibrate(people(questionnaire, 1.5 * vwi**0.5), measured(questionnaire, vwi, other))
+    assert result.held_out["vwi"] > max(result.held_out["log_ratio"], CHANCE)
+    assert result.advantage[1] > 0
+    assert result.verdict == "VWI predicts better than the log ratio"
+    assert result.geometries == ("cover 0", "cover 1", "cover 2")
     # 36 pairs: 9 within a cover are predicted once, 27 across twice.
-    assert found.votes == 25 * (9 + 2 * 27)
+    assert result.votes == 25 * (9 + 2 * 27)
 
 
-def test_a_failure_is_told(questionnaire):
+def test_a_failure_is_reported(questionnaire):
     vwi, other = visible()
     truth = 20 * other
-    found = calibrate(people(questionnaire, truth), measured(questionnaire, vwi, other))
-    assert found.verdict != "VWI predicts better than the log ratio"
-    assert found.advantage[2] < 0
-    found = calibrate(people(questionnaire, -0.2 * vwi), measured(questionnaire, vwi, other))
-    assert found.verdict == "VWI predicts no better than a coin"
+    result = calibrate(people(questionnaire, truth), measured(questionnaire, vwi, other))
+    assert result.verdict != "VWI predicts better than the log ratio"
+    assert result.advantage[2] < 0
+    result = calibrate(people(questionnaire, -0.2 * vwi), measured(questionnaire, vwi, other))
+    assert result.verdict == "VWI predicts no better than a coin"
 
 
 def test_the_held_out_figure_by_hand(questionnaire):
@@ -73,23 +73,23 @@ def test_the_held_out_figure_by_hand(questionnaire):
     vwi, other = visible()
     truth = 1.5 * vwi**0.5
     given = people(questionnaire, truth, 200)
-    found = calibrate(given, measured(questionnaire, vwi, other))
+    result = calibrate(given, measured(questionnaire, vwi, other))
     p = 1 / (1 + np.exp(truth[None, :] - truth[:, None]))
     cover = np.arange(COUNT) % 3
     weight = np.where(cover[:, None] == cover[None, :], 1, 2) * ~np.eye(COUNT, dtype=bool)
     entropy = -p * np.log(p)
     best = -(weight * entropy).sum() / (weight.sum() / 2)
-    assert found.held_out["vwi"] == pytest.approx(best, abs=0.01)
+    assert result.held_out["vwi"] == pytest.approx(best, abs=0.01)
 
 
 def test_preference_expects_the_smoother_one(questionnaire):
     vwi, other = visible()
-    found = calibrate(
+    result = calibrate(
         people(questionnaire, -1.5 * vwi**0.5),
         measured(questionnaire, vwi, other),
         question="preference",
     )
-    assert found.held_out["vwi"] > CHANCE
+    assert result.held_out["vwi"] > CHANCE
 
 
 def test_link_at_its_ends():

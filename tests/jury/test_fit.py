@@ -1,4 +1,4 @@
-"""From votes to strengths: known truths come back, odd judges and broken designs are told."""
+"""From votes to strengths: known truths come back, odd judges and broken designs are reported."""
 
 from dataclasses import replace
 
@@ -92,7 +92,7 @@ def test_drawing_again_with_one_seed_gives_the_same_intervals(questionnaire):
     assert first == again
 
 
-def test_coin_flippers_are_told_and_left_out(questionnaire):
+def test_coin_flippers_are_named_and_left_out(questionnaire):
     given = ballots(questionnaire, [2 * NINE] * 8 + [None] * 3, seed=1)
     result = fit_votes(given, "wrinkles", resamples=50)
     out = {r.judge: r.excluded for r in result.records if r.excluded}
@@ -134,7 +134,7 @@ def test_one_wrong_catch_pair_needs_a_low_zeta_beside_it(questionnaire):
     assert "1 of 4 catch pairs wrong and zeta" in guessing.excluded
 
 
-def test_an_item_that_always_wins_is_told_and_has_no_bound(questionnaire):
+def test_an_item_that_always_wins_is_reported_and_has_no_bound(questionnaire):
     theta = NINE.copy()
     theta[4] = 40.0
     result = fit_votes(ballots(questionnaire, [theta] * 10, seed=1), "wrinkles", resamples=50)

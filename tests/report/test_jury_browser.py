@@ -44,18 +44,18 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Questionnaire, str]:
 
 @pytest.fixture
 def page(browser, made):
-    """Open the page; whatever the console says or the network is asked fails the test."""
+    """Open the page; any console message or network request fails the test."""
     context = browser.new_context(offline=True, viewport={"width": 1280, "height": 900})
     page = context.new_page()
-    said: list[str] = []
-    page.on("console", lambda message: said.append(message.text))
-    page.on("pageerror", lambda error: said.append(str(error)))
+    messages: list[str] = []
+    page.on("console", lambda message: messages.append(message.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
     outside = ("file:", "blob:")
-    page.on("request", lambda r: None if r.url.startswith(outside) else said.append(r.url))
+    page.on("request", lambda r: None if r.url.startswith(outside) else messages.append(r.url))
     page.goto(made[1])
     yield page
     context.close()
-    assert said == []
+    assert messages == []
 
 
 def begin(page: Any, name: str, number: int) -> None:
@@ -71,11 +71,11 @@ def answer(page: Any, key: str) -> None:
     if page.locator("#pause").is_visible():
         page.keyboard.press("Enter")
     page.wait_for_selector("#picture-right:not(.waiting)")
-    before = page.locator("#said").text_content()
+    before = page.locator("#status").text_content()
     page.keyboard.press(key)
     page.wait_for_function(
         "text => document.querySelector('#trial').hidden"
-        " || document.querySelector('#said').textContent !== text",
+        " || document.querySelector('#status').textContent !== text",
         arg=before,
     )
 
@@ -114,12 +114,12 @@ def test_answers_survive_a_reload_and_can_be_taken_back(page, made):
         answer(page, key)
     page.reload()
     page.wait_for_selector("#picture-right:not(.waiting)")
-    assert page.locator("#said").text_content().startswith("Pair 4 of ")
+    assert page.locator("#status").text_content().startswith("Pair 4 of ")
     page.keyboard.press("Backspace")
-    assert page.locator("#said").text_content().startswith("Pair 3 of ")
+    assert page.locator("#status").text_content().startswith("Pair 3 of ")
     page.reload()
     page.wait_for_selector("#picture-right:not(.waiting)")
-    assert page.locator("#said").text_content().startswith("Pair 3 of ")
+    assert page.locator("#status").text_content().startswith("Pair 3 of ")
 
 
 def test_a_number_belongs_to_one_judge(page):
@@ -127,13 +127,13 @@ def test_a_number_belongs_to_one_judge(page):
     answer(page, "ArrowLeft")
     page.get_by_role("button", name="Another judge").click()
     begin(page, "Dora", 3)
-    assert "Number 3 was taken by somebody else" in page.locator("#notice").text_content()
+    assert "Number 3 is already used by another judge" in page.locator("#notice").text_content()
     page.keyboard.press("Backspace")
     page.keyboard.type("1")
     page.keyboard.press("Enter")
     assert page.locator("#pause").is_visible()
     page.get_by_role("button", name="Continue").click()
-    assert page.locator("#said").text_content().startswith("Pair 1 of ")
+    assert page.locator("#status").text_content().startswith("Pair 1 of ")
 
 
 def test_a_held_key_answers_once(page):
@@ -145,7 +145,7 @@ def test_a_held_key_answers_once(page):
         page.keyboard.down("ArrowLeft")
     page.keyboard.up("ArrowLeft")
     page.wait_for_selector("#picture-right:not(.waiting)")
-    assert page.locator("#said").text_content().startswith("Pair 2 of ")
+    assert page.locator("#status").text_content().startswith("Pair 2 of ")
 
 
 def test_nothing_tells_which_picture_is_which(page):
@@ -167,9 +167,9 @@ def test_equal_only_where_the_questionnaire_allows_it(browser, tmp_path):
     page.goto(address)
     begin(page, "Gus", 1)
     answer(page, "ArrowDown")
-    kept = page.evaluate(f"localStorage.getItem('seatlook-jury-{questionnaire.digest}-0')")
+    stored = page.evaluate(f"localStorage.getItem('seatlook-jury-{questionnaire.digest}-0')")
     context.close()
-    assert [v["choice"] for v in json.loads(kept)["votes"]] == ["tie"]
+    assert [v["choice"] for v in json.loads(stored)["votes"]] == ["tie"]
 
 
 def test_nothing_overflows_in_a_narrow_window(page):

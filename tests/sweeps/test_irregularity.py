@@ -1,4 +1,4 @@
-"""Irregular covers: each input does to the cover what its name says; causes are found."""
+"""Irregular covers: each input does to the cover what its name says; causes come back."""
 
 from __future__ import annotations
 
@@ -77,9 +77,9 @@ def test_an_unknown_seam_or_curve_is_named(kind):
 
 def test_the_input_that_matters_is_found():
     inputs = draw([tolerance("foam_mm")] * 3, 60, seed=1)
-    found, noise = rank_correlation(inputs, np.exp(2 * inputs[:, 1]) + 0.1 * inputs[:, 0])
-    assert found[1] > 0.95
-    assert np.abs(found[[0, 2]]).max() < 2 * noise
+    result, noise = rank_correlation(inputs, np.exp(2 * inputs[:, 1]) + 0.1 * inputs[:, 0])
+    assert result[1] > 0.95
+    assert np.abs(result[[0, 2]]).max() < 2 * noise
     assert noise == pytest.approx(1.96 / np.sqrt(59))
     assert np.isnan(rank_correlation(inputs, np.ones(60))[0]).all()
 
@@ -106,8 +106,8 @@ def test_a_sweep_of_irregular_covers_leaves_a_map_and_its_causes(tmp_path, capsy
     # A cell that failed is a cover without W2.
     name = next((out / "cells").glob("*.npy")).stem
     (out / f"cells/{name}.json").rename(out / f"cells/{name}.failed.json")
-    found = chance(plan(read_sweep(tmp_path / "sweep.toml")), out / "cells")
-    assert (found.converged, found.left_out) == (4, 1)
+    result = chance(plan(read_sweep(tmp_path / "sweep.toml")), out / "cells")
+    assert (result.converged, result.left_out) == (4, 1)
 
 
 @pytest.mark.parametrize(
@@ -128,7 +128,7 @@ def test_a_sweep_of_irregular_covers_leaves_a_map_and_its_causes(tmp_path, capsy
         ),
     ],
 )
-def test_faults_of_a_sweep_file_are_told(tmp_path, text, message):
+def test_faults_of_a_sweep_file_are_named(tmp_path, text, message):
     write_two_panels(tmp_path)
     (tmp_path / "sweep.toml").write_text(text)
     with pytest.raises(InputError) as caught:

@@ -19,15 +19,15 @@ W2 = {"flat": [0.2, 0.3], "folded": [1.4, 0.3], "worse": [2.0, 1.1]}
 def cells(folder, **status):
     """Leave what cells leave; "" stands for one that failed, None for one not run yet."""
     made = []
-    for name, said in status.items():
+    for name, value in status.items():
         made.append(Cell(name=name, spec=json.dumps({"inputs": [], "values": []})))
-        if said == "":
+        if value == "":
             (folder / f"{name}.failed.json").write_text('{"error": "SolverError"}')
-        elif said is not None:
+        elif value is not None:
             np.save(folder / f"{name}.npy", W2.get(name, [9.0, 9.0]))
             zone = {"zone": "insert", "area": 1.0, "w2_mean": 0.5, "w2_p95": 1.0}
             zone |= {"w2_area_share": 0.0, "w_stretch_mean": 0.1, "w_compression_mean": 0.4}
-            result = {"variant": "", "status": said, "set": [], "inputs": [], "values": []}
+            result = {"variant": "", "status": value, "set": [], "inputs": [], "values": []}
             (folder / f"{name}.json").write_text(json.dumps(result | {"zones": [zone]}))
     return made
 
@@ -37,18 +37,18 @@ def test_covers_without_an_answer_widen_the_probability(tmp_path):
         tmp_path, flat="converged", folded="converged", worse="converged",
         stuck="not converged", broken="", waiting=None,
     )  # fmt: skip
-    found = chance(made, tmp_path)
-    assert (found.converged, found.left_out, found.covers) == (3, 2, 5)
-    assert found.share == pytest.approx([2 / 3, 1 / 3])
-    assert found.low == pytest.approx([2 / 5, 1 / 5])
-    assert found.high == pytest.approx([4 / 5, 3 / 5])
+    covers = chance(made, tmp_path)
+    assert (covers.converged, covers.left_out, covers.covers) == (3, 2, 5)
+    assert covers.share == pytest.approx([2 / 3, 1 / 3])
+    assert covers.low == pytest.approx([2 / 5, 1 / 5])
+    assert covers.high == pytest.approx([4 / 5, 3 / 5])
 
 
 def test_the_bounds_meet_where_all_converged(tmp_path):
-    found = chance(cells(tmp_path, flat="converged", folded="converged"), tmp_path)
-    assert found.left_out == 0
-    assert (found.low == found.share).all()
-    assert (found.high == found.share).all()
+    covers = chance(cells(tmp_path, flat="converged", folded="converged"), tmp_path)
+    assert covers.left_out == 0
+    assert (covers.low == covers.share).all()
+    assert (covers.high == covers.share).all()
 
 
 def test_without_a_converged_cover_nothing_is_said(tmp_path):

@@ -79,15 +79,15 @@ def test_a_failed_cell_is_listed_and_does_not_stop_the_others(tmp_path, capsys, 
     monkeypatch.setattr(cell, "plan", lambda sweep: (gone, good))
     out = tmp_path / "out"
     code = run(["sweep", str(tmp_path / "sweep.toml"), "--out", str(out), "--quiet"])
-    said = capsys.readouterr()
+    printed = capsys.readouterr()
     assert code == 3
-    assert said.err.startswith("failed: gone (mesh.seed=0): InputError: ")
+    assert printed.err.startswith("failed: gone (mesh.seed=0): InputError: ")
     assert "moved.toml" in json.loads((out / "cells/gone.failed.json").read_text())["error"]
     assert [p.stem for p in (out / "cells").glob("*.npy")] == [good.name]
     assert len((out / "sweep.csv").read_text().splitlines()) == 2
 
 
-def test_a_cell_whose_worker_dies_is_told_from_the_others(tmp_path, monkeypatch):
+def test_a_cell_whose_worker_dies_is_named_alone(tmp_path, monkeypatch):
     cells = seeds(tmp_path, 3)
     # As the system does to a process that takes too much memory.
     deadly = Cell(name="deadly", spec=json.dumps({"kill": True}))
@@ -103,10 +103,10 @@ def test_a_cell_whose_worker_dies_is_told_from_the_others(tmp_path, monkeypatch)
         "json.loads = loads\n"
     )
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    found = {
+    result = {
         done.name: what for done, what in run_local([deadly, *cells], tmp_path / "c", workers=2)
     }
-    assert found == {"deadly": "its worker was killed, twice"} | {c.name: "" for c in cells}
+    assert result == {"deadly": "its worker was killed, twice"} | {c.name: "" for c in cells}
 
 
 def test_killed_at_any_moment_and_run_again_nothing_is_lost_or_doubled(four, tmp_path):
@@ -117,9 +117,9 @@ def test_killed_at_any_moment_and_run_again_nothing_is_lost_or_doubled(four, tmp
         time.sleep(0.2 * random.random())
         return bool(list(folder.glob("*.npy")))
 
-    _, said = kill_and_run_again(tmp_path, before=working)
+    _, printed = kill_and_run_again(tmp_path, before=working)
     assert contents(tmp_path / "out" / "cells") == expected
-    assert len(said.splitlines()) == 1 + len(cells)
+    assert len(printed.splitlines()) == 1 + len(cells)
 
 
 @pytest.mark.parametrize("group", [True, False], ids=["keyboard", "one process"])
@@ -134,10 +134,10 @@ def test_an_interrupted_sweep_ends_at_once_and_says_how_to_go_on(four, tmp_path,
     for _ in range(6):
         (os.killpg if group else os.kill)(process.pid, signal.SIGINT)
         with contextlib.suppress(subprocess.TimeoutExpired):
-            _, said = process.communicate(timeout=20)
+            _, printed = process.communicate(timeout=20)
             break
     assert process.returncode == 130
-    assert said.endswith("the same command again goes on where it was: what is done is kept\n")
+    assert printed.endswith("the same command again goes on where it was: what is done is kept\n")
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in workers))
     assert 0 < len(list(folder.glob("*.json"))) < 30
     assert not list(folder.glob("*.failed.json"))
@@ -150,10 +150,10 @@ def test_a_cluster_gives_the_same_bytes_though_a_worker_is_killed(four, tmp_path
     with local_cluster() as cluster:
         first = next(iter(cluster.workers.values()))
         run_ = run_cluster(cells, tmp_path, scheduler=cluster.scheduler_address)
-        found = [next(run_)]
+        result = [next(run_)]
         os.kill(first.pid, signal.SIGKILL)
-        found += run_
-    assert {done.name: what for done, what in found} == {c.name: "" for c in cells}
+        result += run_
+    assert {done.name: what for done, what in result} == {c.name: "" for c in cells}
     assert contents(tmp_path) == expected
 
 

@@ -63,10 +63,10 @@ def test_a_cluster_leaves_the_same_bytes_though_a_worker_is_killed(whole, tmp_pa
     with local_cluster() as cluster:
         first = next(iter(cluster.workers.values()))
         running = run_cluster(cells, tmp_path, scheduler=cluster.scheduler_address)
-        found = list(itertools.islice(running, COUNT // 2))
+        result = list(itertools.islice(running, COUNT // 2))
         os.kill(first.pid, signal.SIGKILL)
-        found += running
-    assert {done.name: what for done, what in found} == {c.name: "" for c in cells}
+        result += running
+    assert {done.name: what for done, what in result} == {c.name: "" for c in cells}
     assert contents(tmp_path) == expected
 
 
@@ -78,8 +78,8 @@ def test_killed_at_any_moment_and_run_again_nothing_is_lost_or_doubled(whole, tm
     def far(folder: Path) -> bool:
         return len(list(folder.glob("*.json"))) >= enough
 
-    done, said = kill_and_run_again(tmp_path, before=far)
+    done, printed = kill_and_run_again(tmp_path, before=far)
     print(f"killed after {len(done)} of {COUNT} cells")
     assert enough <= len(done) < COUNT
     assert contents(tmp_path / "out" / "cells") == expected
-    assert len(said.splitlines()) == 1 + len(cells)
+    assert len(printed.splitlines()) == 1 + len(cells)

@@ -37,8 +37,8 @@ def test_ssim_is_that_of_the_publication():
     y = np.clip(x + rng.normal(0, 0.05, x.shape), 0, 1)
     inside = np.zeros(x.shape, dtype=bool)
     inside[5:-5, 5:-5] = True
-    found = dissimilarity(300 * x**2.2, 300 * y**2.2, white=300.0, mask=inside)
-    assert found == pytest.approx(1 - naive_ssim(x, y), rel=1e-9)
+    result = dissimilarity(300 * x**2.2, 300 * y**2.2, white=300.0, mask=inside)
+    assert result == pytest.approx(1 - naive_ssim(x, y), rel=1e-9)
 
 
 def test_what_is_brighter_than_white_cannot_differ_on_a_display():
@@ -75,12 +75,12 @@ def test_white_must_be_a_luminance():
 def sweep():
     """Measures of the 54 scenes, and what ColorVideoVDP was recorded to say of them."""
     record = json.loads((Path(__file__).parents[1] / "data" / "cvvdp.json").read_text())
-    found = {}
+    result = {}
     for name, test, reference in scenes():
         vwi = score(test, reference, pixels_per_degree=PPD).vwi
-        found[name] = (vwi, log_ratio(test, reference))
-    assert list(found) == list(record["lost"])
-    return np.array(list(found.values())).T, np.array(list(record["lost"].values()))
+        result[name] = (vwi, log_ratio(test, reference))
+    assert list(result) == list(record["lost"])
+    return np.array(list(result.values())).T, np.array(list(record["lost"].values()))
 
 
 @pytest.mark.validate

@@ -19,9 +19,9 @@ LAMBERT = Appearance(albedo=np.full(3, 0.2), f0=0.0, roughness=1.0)
 LOOKS = ("black", "bright", "suede", "smooth black", "smooth bright", "bright rough")
 
 
-def missed(look, found):
+def missed(look, result):
     """Mark a look that misses the bar, with what was found."""
-    return pytest.param(look, marks=pytest.mark.xfail(strict=True, reason=found), id=look)
+    return pytest.param(look, marks=pytest.mark.xfail(strict=True, reason=result), id=look)
 
 
 @pytest.fixture(scope="module")
@@ -65,11 +65,11 @@ def test_equal_pictures_score_exactly_zero(view, lit):
 
 
 def test_a_highlight_shows_dark_and_glossy_first(view, lit, record_property):
-    found = {name: vwi(view, *pictures) for name, pictures in lit.items()}
-    record_property("vwi", found)
-    assert found["smooth black"] > 1.1 * found["smooth bright"] > 1.21 * found["bright rough"]
-    assert found["bright rough"] > 1.1 * found["suede"]
-    assert found["black"] > found["bright"] > found["bright rough"]
+    result = {name: vwi(view, *pictures) for name, pictures in lit.items()}
+    record_property("vwi", result)
+    assert result["smooth black"] > 1.1 * result["smooth bright"] > 1.21 * result["bright rough"]
+    assert result["bright rough"] > 1.1 * result["suede"]
+    assert result["black"] > result["bright"] > result["bright rough"]
 
 
 @pytest.mark.xfail(strict=True, reason="8.7 %: grain hides more where it glitters more")
@@ -173,6 +173,6 @@ def test_a_texture_shifted_by_one_pixel_is_caught(view, looks, highlight):
 
 
 def test_grows_with_the_amplitude_nearly_linearly(view, looks):
-    found = amplitude_ladder(view, replace(looks["black"], texture="none"))
-    assert (np.diff(found.vwi) > 0).all()
-    assert np.corrcoef(found.heights, found.vwi)[0, 1] ** 2 > 0.99
+    result = amplitude_ladder(view, replace(looks["black"], texture="none"))
+    assert (np.diff(result.vwi) > 0).all()
+    assert np.corrcoef(result.heights, result.vwi)[0, 1] ** 2 > 0.99

@@ -30,12 +30,12 @@ def lit():
     high = sun(elevation_deg=70, azimuth_deg=90, illuminance_lux=20_000 / np.sin(np.radians(70)))
     rig = Rig(name="sun", lights=(high,), ambient=2_000 / np.pi)
     shapes = [shape(depth=depth) for depth in (1.0, 0.0)]
-    found = {}
+    result = {}
     for name in NAMES:
         drawn = LOOKS[name]
         look = Appearance(albedo=np.full(3, drawn.albedo), roughness=drawn.roughness, f0=drawn.f0)
-        found[name] = [luminance(render(s, look, rig=rig, camera=camera)) for s in shapes]
-    return found
+        result[name] = [luminance(render(s, look, rig=rig, camera=camera)) for s in shapes]
+    return result
 
 
 def vwi(test, reference, share=1.0):

@@ -30,17 +30,17 @@ def lobe(azimuth, elevation, width_deg):
 def test_finds_a_highlight_anywhere(width, seed):
     rng = np.random.default_rng(seed)
     azimuth, elevation = rng.uniform(0, 360), rng.uniform(15, 85)
-    found = worst_direction(lobe(azimuth, elevation, width))
-    assert found.vwi > 0.95
-    assert len(found.tried) <= 100
+    result = worst_direction(lobe(azimuth, elevation, width))
+    assert result.vwi > 0.95
+    assert len(result.tried) <= 100
 
 
 def test_the_higher_of_two_wins():
     low, high = lobe(40, 20, 20), lobe(200, 60, 20)
-    found = worst_direction(lambda a, e: 0.8 * low(a, e) + high(a, e))
-    assert abs(found.azimuth_deg - 200) < 8
-    assert abs(found.elevation_deg - 60) < 4
-    assert found.vwi == found.tried[:, 2].max()
+    result = worst_direction(lambda a, e: 0.8 * low(a, e) + high(a, e))
+    assert abs(result.azimuth_deg - 200) < 8
+    assert abs(result.elevation_deg - 60) < 4
+    assert result.vwi == result.tried[:, 2].max()
 
 
 def test_no_light_is_tried_twice_or_below_the_lowest():

@@ -48,10 +48,10 @@ def test_outlines_stay():
 def test_what_is_taken_out_follows_the_wavelength(length, left):
     """A filter of the fourth power: half at the cut-off, 1/17 at twice, 16/17 at half of it."""
     solution = sheet(wave(length), size=0.8, steps=80)
-    found = waves(solution, cutoff=0.1)
+    result = waves(solution, cutoff=0.1)
     middle = inside(solution, 0.2)
     truth = wave(length)(*solution.cover.rest.T)
-    gain = found[middle] @ truth[middle] / (truth[middle] @ truth[middle])
+    gain = result[middle] @ truth[middle] / (truth[middle] @ truth[middle])
     assert gain == pytest.approx(left, abs=0.02)
 
 

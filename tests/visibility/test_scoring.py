@@ -99,9 +99,9 @@ def test_all_say_the_same(scored):
     assert rows[3][1] == scored.grid.worst_texture("sun")
     assert len(cause_table(scored).rows) == 2
     assert {row[0] for row in zone_table(scored).rows} == {"left interior", "right interior"}
-    said = list(sentences(scored))
-    assert said[0] == f"Least visible texture under these lights: {scored.grid.least_visible}."
-    assert ("Not separable" in " ".join(said)) == bool(scored.grid.not_separable())
+    lines = list(sentences(scored))
+    assert lines[0] == f"Least visible texture under these lights: {scored.grid.least_visible}."
+    assert ("Not separable" in " ".join(lines)) == bool(scored.grid.not_separable())
 
 
 def test_maps_of_visibility_share_one_range(scored, tmp_path):

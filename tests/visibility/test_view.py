@@ -64,21 +64,21 @@ def test_only_interiors_count(view, wrinkled):
 def test_area_of_the_pixels_is_that_of_the_cover():
     solution = zoned(sheet(flat, steps=24))
     for camera in (above(size=(320, 320), fov=14), oblique((400, 320))):
-        found = region(Studio(solution), camera)
-        shown = found.face >= 0
-        assert found.area[shown].sum() == pytest.approx(0.04, rel=0.02)
+        result = region(Studio(solution), camera)
+        shown = result.face >= 0
+        assert result.area[shown].sum() == pytest.approx(0.04, rel=0.02)
 
 
 def test_silhouettes_are_left_out():
     hill = zoned(sheet(lambda x, y: 0.08 * np.exp(-((x**2 + y**2) / 0.03**2)), steps=48))
-    found = region(Studio(hill), named_view("front_34", target=np.zeros(3), size=(320, 180)))
+    result = region(Studio(hill), named_view("front_34", target=np.zeros(3), size=(320, 180)))
     p = hill.positions[hill.cover.faces]
     normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
     camera = named_view("front_34", target=np.zeros(3), size=(320, 180))
     ray = camera.position - p.mean(axis=1)
     cosine = (normal * ray).sum(axis=1)
     cosine /= np.linalg.norm(normal, axis=1) * np.linalg.norm(ray, axis=1)
-    assert cosine[found.face[found.mask]].min() >= 0.2
+    assert cosine[result.face[result.mask]].min() >= 0.2
 
 
 def test_a_sight_splits_by_zone_and_cause(view, wrinkled):
@@ -126,23 +126,23 @@ def test_the_other_references_see_the_same_wrinkles(wrinkled, view, mode):
     vertices, faces = box([-0.15, -0.15, -0.1], [0.15, 0.15, -0.0005])
     foam = Foam(vertices=vertices, faces=faces, material=foam_material())
     on_foam_solution = replace(wrinkled, cover=replace(wrinkled.cover, foam=foam))
-    found = View(on_foam_solution, oblique((320, 240)), mode=mode, quality="draft")
-    same = solver_faces(found.test_studio, found.camera) == solver_faces(
-        found.reference_studio, found.camera
+    result = View(on_foam_solution, oblique((320, 240)), mode=mode, quality="draft")
+    same = solver_faces(result.test_studio, result.camera) == solver_faces(
+        result.reference_studio, result.camera
     )
-    assert same[found.region.mask].mean() > 0.999
+    assert same[result.region.mask].mean() > 0.999
     if mode == "normals":
         np.testing.assert_array_equal(
-            found.reference_studio.surface.mesh.vertices, found.test_studio.surface.mesh.vertices
+            result.reference_studio.surface.mesh.vertices, result.test_studio.surface.mesh.vertices
         )
-    assert found.vwi(BLACK, RIG) == pytest.approx(view.vwi(BLACK, RIG), rel=0.15)
-    assert found.null_score(BLACK, RIG) < 0.1
+    assert result.vwi(BLACK, RIG) == pytest.approx(view.vwi(BLACK, RIG), rel=0.15)
+    assert result.null_score(BLACK, RIG) < 0.1
 
 
 def test_the_equivalent_height_of_the_field_itself_is_its_height(view):
     ladder = amplitude_ladder(view, BLACK, heights=(0, 1e-4, 2e-4, 4e-4, 8e-4))
-    found = ladder.equivalent(view.vwi(BLACK, reference_rig(view.camera)))
-    assert found == pytest.approx(ladder.height, rel=0.05)
+    result = ladder.equivalent(view.vwi(BLACK, reference_rig(view.camera)))
+    assert result == pytest.approx(ladder.height, rel=0.05)
 
 
 def test_height_is_that_of_the_wave():
@@ -167,10 +167,10 @@ def test_equivalent_heights_off_the_ladder():
 
 
 def test_light_across_is_the_worst_light_of_a_rough_cover(view):
-    found = search_light(view, ROUGH, sun_rig(), coarse=24, rounds=1, keep=1)
+    result = search_light(view, ROUGH, sun_rig(), coarse=24, rounds=1, keep=1)
     # The wave runs along x: light from +x or -x, low.
-    assert abs(np.sin(np.radians(found.azimuth_deg))) > 0.7
-    assert found.elevation_deg < 40
+    assert abs(np.sin(np.radians(result.azimuth_deg))) > 0.7
+    assert result.elevation_deg < 40
 
 
 def test_the_null_gate(view, wrinkled):

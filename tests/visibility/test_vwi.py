@@ -54,10 +54,10 @@ def vwi(smooth, wrinkled):
 @pytest.mark.parametrize("look", list(LOOKS))
 def test_equal_pictures_score_exactly_zero(look, smooth):
     picture = smooth.draw(LOOKS[look], sun(70))
-    found = score(picture, picture.copy(), pixels_per_degree=PPD, pixel_area=STEP**2)
-    assert found.vwi == found.p995 == found.map.max() == 0
-    assert found.visible_share == found.visible_area == (0.0, 0.0)
-    assert {band.vwi for band in found.bands} == {0.0}
+    result = score(picture, picture.copy(), pixels_per_degree=PPD, pixel_area=STEP**2)
+    assert result.vwi == result.p995 == result.map.max() == 0
+    assert result.visible_share == result.visible_area == (0.0, 0.0)
+    assert {band.vwi for band in result.bands} == {0.0}
 
 
 def test_grows_with_the_amplitude_nearly_linearly(vwi):
@@ -152,16 +152,16 @@ def test_figures_of_a_region_come_from_its_map(smooth, wrinkled):
     mask = np.zeros(SIZE[::-1], dtype=bool)
     mask[60:300, 80:400] = True
     area = np.full(mask.shape, STEP**2)
-    found = score(*pictures, pixels_per_degree=PPD, mask=mask, pixel_area=area)
-    inside = found.map[mask]
-    assert found.vwi == pytest.approx(np.mean(inside**3.5) ** (1 / 3.5))
-    assert found.vwi == pytest.approx(region_visibility(found.map, mask=mask))
-    assert found.p995 == np.quantile(inside, 0.995)
-    assert found.visible_share == ((inside > 3).mean(), (inside > 10).mean())
-    assert found.visible_area[1] == pytest.approx((inside > 10).sum() * STEP**2)
+    result = score(*pictures, pixels_per_degree=PPD, mask=mask, pixel_area=area)
+    inside = result.map[mask]
+    assert result.vwi == pytest.approx(np.mean(inside**3.5) ** (1 / 3.5))
+    assert result.vwi == pytest.approx(region_visibility(result.map, mask=mask))
+    assert result.p995 == np.quantile(inside, 0.995)
+    assert result.visible_share == ((inside > 3).mean(), (inside > 10).mean())
+    assert result.visible_area[1] == pytest.approx((inside > 10).sum() * STEP**2)
     # Bands are pooled at their own size; their sum misses the whole by the edges only.
-    assert sum(b.vwi**3.5 for b in found.bands) ** (1 / 3.5) == pytest.approx(found.vwi, rel=0.02)
-    frequencies = [b.frequency for b in found.bands]
+    assert sum(b.vwi**3.5 for b in result.bands) ** (1 / 3.5) == pytest.approx(result.vwi, rel=0.02)
+    frequencies = [b.frequency for b in result.bands]
     assert frequencies[0] == pytest.approx(PPD / 2**1.5)
     assert np.allclose(np.diff(np.log2(frequencies)), -1)
     assert frequencies[-1] >= OBSERVER.lowest_frequency > frequencies[-1] / 2
@@ -175,9 +175,9 @@ def test_a_grating_by_hand():
     # At 1/4 cycle per pixel the filter keeps 1/4, its way up 1/2 and aliases as much: C = 7/8 c.
     wave = np.cos(np.pi * x / 2)[None, :].repeat(256, axis=0)
     c, mean = 1e-3, 100.0
-    found = score(mean * (1 + c * wave), np.full((256, 256), mean), pixels_per_degree=45.0)
+    result = score(mean * (1 + c * wave), np.full((256, 256), mean), pixels_per_degree=45.0)
     fine = contrast_sensitivity(45 / 2**1.5, mean) * c
-    middle = found.map[100:156, 100:156:4]
+    middle = result.map[100:156, 100:156:4]
     gain = 1 - 0.25 * 0.5
     coarse = 0.125 * contrast_sensitivity(45 / 2**2.5, mean) * c
     assert middle.max() >= gain * fine

@@ -26,8 +26,8 @@ def view():
 def test_no_light_of_400_shows_more_than_the_one_found(view, looks, kind, record_property):
     rig_at = sun_rig() if kind == "sun" else bulb_rig(view.camera)
     best = max(view.vwi(looks, rig_at(*angles)) for angles in hemisphere(400))
-    found = search_light(view, looks, rig_at)
-    record_property("found_over_best_of_400", found.vwi / best)
-    assert found.vwi >= 0.95 * best
-    assert len(found.tried) <= 100
-    assert np.isfinite(found.tried).all()
+    result = search_light(view, looks, rig_at)
+    record_property("found_over_best_of_400", result.vwi / best)
+    assert result.vwi >= 0.95 * best
+    assert len(result.tried) <= 100
+    assert np.isfinite(result.tried).all()

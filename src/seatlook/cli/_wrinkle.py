@@ -308,7 +308,7 @@ def _draw_shells(
     if made.projected:
         say(
             f"no flat undeformed state: {', '.join(made.projected)}; textures are laid on along "
-            "the world's axes, and the distortion of the texture is not told"
+            "the world's axes, and the distortion of the texture is not known"
         )
     _export(made.solution, on_faces(wrinkles.indices, made), question.export)
 

@@ -100,5 +100,5 @@ def _projected(drawn: DrawnState) -> Iterator[str]:
     if drawn.cover.projected:
         yield (
             f"No flat undeformed state: {', '.join(drawn.cover.projected)}. Textures are laid on "
-            "along the world's axes, and the distortion of the texture is not told."
+            "along the world's axes, and the distortion of the texture is not known."
         )

@@ -72,8 +72,8 @@ def rank_correlation(inputs: FloatArray, output: FloatArray) -> tuple[FloatArray
     out = stats.rankdata(output)
     if np.ptp(out) == 0:
         return np.full(inputs.shape[1], np.nan), float(1.96 / np.sqrt(len(out) - 1))
-    found = [np.corrcoef(ranks[:, k], out)[0, 1] for k in range(inputs.shape[1])]
-    return np.array(found), float(1.96 / np.sqrt(len(out) - 1))
+    correlation = [np.corrcoef(ranks[:, k], out)[0, 1] for k in range(inputs.shape[1])]
+    return np.array(correlation), float(1.96 / np.sqrt(len(out) - 1))
 
 
 def _seam_offset(scene: Scene, tolerance: Tolerance, value: float) -> Scene:

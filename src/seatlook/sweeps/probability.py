@@ -59,9 +59,9 @@ def chance(cells: Sequence[Cell], folder: Path) -> Chance:
     InputError
         None of them converged.
     """
-    found = rows(cells, folder)
-    good = {row["cell"] for row in found if row["status"] == "converged"}
-    left_out = len(found) - len(good) + sum(failed(cell, folder) for cell in cells)
+    table = rows(cells, folder)
+    good = {row["cell"] for row in table if row["status"] == "converged"}
+    left_out = len(table) - len(good) + sum(failed(cell, folder) for cell in cells)
     above = [np.load(folder / f"{c.name}.npy") > 1 for c in cells if c.name in good]
     if not above:
         raise InputError.single(
@@ -70,26 +70,30 @@ def chance(cells: Sequence[Cell], folder: Path) -> Chance:
     return Chance(share=np.mean(above, axis=0), converged=len(above), left_out=left_out)
 
 
-def zone_chances(found: Chance, cover: Cover) -> list[dict[str, str | int | float]]:
+def zone_chances(probability: Chance, cover: Cover) -> list[dict[str, str | int | float]]:
     """One row per zone of the cover as drawn: means by area, and where it is largest."""
     area, listed = cover.rest_area, []
-    columns = {"": found.share, "_if_left_out_below": found.low, "_if_left_out_above": found.high}
+    columns = {
+        "": probability.share,
+        "_if_left_out_below": probability.low,
+        "_if_left_out_above": probability.high,
+    }
     for number, zone in enumerate(cover.zone_names):
-        mine = cover.zone == number
-        if not mine.any():
+        inside = cover.zone == number
+        if not inside.any():
             continue
         row: dict[str, str | int | float] = {
-            "zone": zone, "converged": found.converged, "left_out": found.left_out,
+            "zone": zone, "converged": probability.converged, "left_out": probability.left_out,
         }  # fmt: skip
         for end, share in columns.items():
-            row[f"probability{end}"] = float(share[mine] @ area[mine] / area[mine].sum())
-            row[f"largest{end}"] = float(share[mine].max())
+            row[f"probability{end}"] = float(share[inside] @ area[inside] / area[inside].sum())
+            row[f"largest{end}"] = float(share[inside].max())
         listed.append(row)
     return listed
 
 
 def draw_chance(
-    cells: Sequence[Cell], found: Chance, path: Path
+    cells: Sequence[Cell], probability: Chance, path: Path
 ) -> list[dict[str, str | int | float]]:
     """Draw the probability that W2 is above 1 on the cover as drawn; return its zones."""
     spec = json.loads(cells[0].spec)
@@ -97,19 +101,21 @@ def draw_chance(
     solution = solve(assemble(scene))
     pbr.render_map(
         solution,
-        found.share,
+        probability.share,
         camera=scene.cameras[0],
-        title=_title(found),
+        title=_title(probability),
         unit="1",
         value_range=(0.0, 1.0),
         colormap="cividis",
     ).save(path)
-    return zone_chances(found, solution.cover)
+    return zone_chances(probability, solution.cover)
 
 
-def _title(found: Chance) -> str:
-    title = f"Probability that W2 is above 1: {found.converged} of {found.covers} covers"
-    if not found.left_out:
+def _title(probability: Chance) -> str:
+    title = (
+        f"Probability that W2 is above 1: {probability.converged} of {probability.covers} covers"
+    )
+    if not probability.left_out:
         return f"{title}, all that were made"
-    most = found.left_out / found.covers
+    most = probability.left_out / probability.covers
     return f"{title} that converged; the others could change it by up to {most:.2f}"

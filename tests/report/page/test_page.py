@@ -21,18 +21,18 @@ class Elements(HTMLParser):
 
     def __init__(self, text: str) -> None:
         super().__init__()
-        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.result: list[tuple[str, dict[str, str | None]]] = []
         self.text = ""
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.found.append((tag, dict(attrs)))
+        self.result.append((tag, dict(attrs)))
 
     def handle_data(self, data: str) -> None:
         self.text += data
 
     def all(self, tag: str) -> list[dict[str, str | None]]:
-        return [attributes for name, attributes in self.found if name == tag]
+        return [attributes for name, attributes in self.result if name == tag]
 
 
 @pytest.fixture(scope="module")
@@ -120,7 +120,7 @@ def test_a_ragged_table_is_refused():
 def test_a_page_without_checks_history_or_files_has_no_empty_parts(tmp_path):
     data = page_data(tmp_path, checks=(), history={}, files=(), warnings=())
     text = write_page(data, tmp_path).read_text(encoding="utf-8")
-    for part in ("Read first", "In this folder", "Kept", "<polyline"):
+    for part in ("Read first", "In this folder", "Met", "<polyline"):
         assert part not in text
 
 

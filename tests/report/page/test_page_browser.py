@@ -28,18 +28,18 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.fixture
 def page(browser: Any, address: str) -> Iterator[Any]:
-    """Open the page; whatever the console says or the network is asked fails the test."""
+    """Open the page; any console message or network request fails the test."""
     context = browser.new_context(offline=True, viewport={"width": 1280, "height": 900})
     page = context.new_page()
-    said: list[str] = []
-    page.on("console", lambda message: said.append(message.text))
-    page.on("pageerror", lambda error: said.append(str(error)))
-    page.on("request", lambda r: None if r.url.startswith("file:") else said.append(r.url))
-    page.on("requestfailed", lambda request: said.append(f"failed: {request.url}"))
+    messages: list[str] = []
+    page.on("console", lambda message: messages.append(message.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
+    page.on("request", lambda r: None if r.url.startswith("file:") else messages.append(r.url))
+    page.on("requestfailed", lambda request: messages.append(f"failed: {request.url}"))
     page.goto(address)
     yield page
     context.close()
-    assert said == []
+    assert messages == []
 
 
 def pictures(page: Any) -> tuple[str, str]:
@@ -71,7 +71,7 @@ def test_pictures_are_picked_swapped_and_flipped(page):
     page.get_by_role("button", name="Show suede <insert> under sun as A").click()
     page.locator("#choice-b").select_option(label="W_compression")
     assert pictures(page) == ("A: suede <insert>, sun", "B: W_compression")
-    assert page.locator("#said").text_content() == "A: suede <insert>, sun. B: W_compression."
+    assert page.locator("#status").text_content() == "A: suede <insert>, sun. B: W_compression."
     page.locator("#stage").focus()
     page.keyboard.press("s")
     assert pictures(page) == ("A: W_compression", "B: suede <insert>, sun")
@@ -120,7 +120,7 @@ def test_an_overlay_lies_over_both_with_its_opacity(page):
     assert over.is_visible()
     assert over.evaluate("image => image.style.opacity") == "0.51"
     assert over.get_attribute("src").endswith("maps/W2.png")
-    assert "Over both: W2." in page.locator("#said").text_content()
+    assert "Over both: W2." in page.locator("#status").text_content()
 
 
 def test_the_dial_shows_a_under_another_light(page):
@@ -158,14 +158,14 @@ def test_the_worst_light_and_cell_are_marked(page):
 def test_maps_take_a_range_of_their_own(page):
     shown = "[...document.querySelectorAll('.maps img:not([hidden])')].map(i => i.src)"
     assert all_images_decode(page)
-    said = page.locator("#maps .range").nth(2)
-    assert said.text_content() == "0 to 1.50"
+    label = page.locator("#maps .range").nth(2)
+    assert label.text_content() == "0 to 1.50"
     page.locator("#shared").uncheck()
-    assert said.text_content() == "0 to 0.400"
+    assert label.text_content() == "0 to 0.400"
     assert page.evaluate(shown)[2].endswith("W_stretch-own.png")
     page.locator("#shared").focus()
     page.keyboard.press(" ")
-    assert said.text_content() == "0 to 1.50"
+    assert label.text_content() == "0 to 1.50"
     assert page.evaluate(shown)[2].endswith("W_stretch.png")
 
 
@@ -275,13 +275,13 @@ def test_one_file_alone_shows_everything(browser, tmp_path):
     (tmp_path / "sent.html").write_bytes(path.read_bytes())
     context = browser.new_context(offline=True)
     page = context.new_page()
-    said: list[str] = []
-    page.on("console", lambda message: said.append(message.text))
+    messages: list[str] = []
+    page.on("console", lambda message: messages.append(message.text))
     page.goto((tmp_path / "sent.html").as_uri())
     assert all_images_decode(page)
     page.get_by_role("button", name="Show suede <insert> under sun as A").click()
     assert pictures(page)[0] == "A: suede <insert>, sun"
-    assert said == []
+    assert messages == []
     context.close()
 
 

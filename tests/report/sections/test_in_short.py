@@ -19,9 +19,9 @@ def zone(name: str, *, share: float, stretch: float = 0.5, area: float = 0.01) -
 
 def test_a_smooth_cover_names_its_highest_zone():
     zones = [zone("insert", share=0.0), zone("free edge", share=0.9)]
-    (said,) = wrinkled(zones)
-    assert said.startswith("Nowhere is W2 above 1")
-    assert said.endswith("Highest is insert with 0.200 (95 %).")
+    (sentence,) = wrinkled(zones)
+    assert sentence.startswith("Nowhere is W2 above 1")
+    assert sentence.endswith("Highest is insert with 0.200 (95 %).")
     assert above_one(zones) == 0
     assert list(wrinkled([])) == []
 
@@ -36,8 +36,8 @@ def test_a_smooth_cover_names_its_highest_zone():
 )
 def test_a_wrinkled_cover_says_where_and_why(stretch, cause):
     zones = [zone("insert", share=0.0, area=0.03), zone("seam", share=0.2, stretch=stretch)]
-    (said,) = wrinkled(zones)
-    assert said == f"W2 is above 1 on 5 % of the cover, most in seam: 20 % of it, {cause}."
+    (sentence,) = wrinkled(zones)
+    assert sentence == f"W2 is above 1 on 5 % of the cover, most in seam: 20 % of it, {cause}."
 
 
 def test_the_most_and_least_visible_are_named():
@@ -51,7 +51,7 @@ def test_the_most_and_least_visible_are_named():
 
 
 def test_missed_limits_are_said():
-    kept = Check(name="insert: vwi", value="1", limit="2", kept=True)
+    met = Check(name="insert: vwi", value="1", limit="2", kept=True)
     bad = Check(name="class A: w2_area_share", value="0.2", limit="0.1", kept=False)
-    assert list(missed([kept])) == []
-    assert list(missed([kept, bad])) == ["Missed: class A: w2_area_share is 0.2, the limit is 0.1."]
+    assert list(missed([met])) == []
+    assert list(missed([met, bad])) == ["Missed: class A: w2_area_share is 0.2, the limit is 0.1."]

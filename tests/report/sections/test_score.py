@@ -1,4 +1,4 @@
-"""The page's section on visibility: what was found, or why nothing can be said."""
+"""The page's section on visibility: the score, or why there is none."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ WIDTH, HEIGHT = 320.0, 150.0  # drawing area of one chart in SVG units
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tick:
-    """A mark on an axis: where it is, in SVG units, and what it says."""
+    """A mark on an axis: its place in SVG units, and its label."""
 
     at: float
     label: str

@@ -86,13 +86,13 @@ class PageData:
     making : energy balance, hooks, and pictures of the stages
     design : the shape against its design surface; None where there is none
     spots : places of the worst wrinkles in the pictures
-    toml : what parameters belong to -> the same as TOML, every digit kept
+    toml : what parameters belong to -> the same as TOML, with every digit
     score : how visible wrinkles are; None where nothing was scored
     parameters : what they belong to -> table of keys, values and sources
     provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
     checks : solver conditions and accept limits
-    status : the solver's own word, such as "converged"
-    warnings : sentences that must be read before the pictures are believed
+    status : of the solver, such as "converged"
+    warnings : sentences to read before the pictures are trusted
     baseline : the variant that changes in ``differences`` and ``zones`` are from
     summary : sentences that answer the page's questions, above everything else
     facing : the two cells that are compared first; the first two of the grid if not given
@@ -151,8 +151,8 @@ class PageData:
     def images(self) -> tuple[str, ...]:
         """Every image the page shows."""
         alone = (view.alone for view in self.views if view.alone)
-        made = self.making.pictures if self.making else ()
-        return (*self.pictures.values(), *(view.image for view in self.views), *alone, *made)
+        making = self.making.pictures if self.making else ()
+        return (*self.pictures.values(), *(view.image for view in self.views), *alone, *making)
 
     @property
     def compared(self) -> tuple[tuple[str, str], tuple[str, str]]:

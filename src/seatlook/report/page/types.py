@@ -49,7 +49,7 @@ class MapView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Check:
-    """One condition of "converged" or one limit of [accept]: a value, its limit, kept or not."""
+    """One condition of "converged" or one limit of [accept]: a value, its limit, met or not."""
 
     name: str
     value: str
@@ -100,7 +100,7 @@ class MakingSection:
 
     Parameters
     ----------
-    work : one row per part of the energy balance; None where the solver kept no account
+    work : one row per part of the energy balance; None where the solver recorded none
     hooks : one row per hook: its rings and what they pull
     over : sentences on hooks that pull harder than their limit
     strip, animation : paths of these pictures; None where they are not in the folder
@@ -134,7 +134,7 @@ class DesignSection:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScoreSection:
-    """What the page says about visibility; only ``refused`` is set where no score can be given.
+    """What the page shows of visibility; only ``refused`` is set where no score can be given.
 
     Parameters
     ----------

@@ -56,12 +56,12 @@ def page_html(data: PageData, *, inside: Path | None = None) -> str:
     """Return the page as text, with the images of the folder ``inside`` in it if there is one."""
     style = (_TEMPLATES / "page.css").read_text(encoding="utf-8")
     script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
-    made = environment()
-    made.filters["url"] = quote if inside is None else lambda name: _data_uri(inside / name)
+    templates = environment()
+    templates.filters["url"] = quote if inside is None else lambda name: _data_uri(inside / name)
     # The script finds a picture by the name of its element, whatever its address is.
-    made.globals["ids"] = {name: f"i{k}" for k, name in enumerate(dict.fromkeys(data.images))}
-    made.globals["alone"] = inside is not None
-    return made.get_template("page.html.j2").render(
+    templates.globals["ids"] = {name: f"i{k}" for k, name in enumerate(dict.fromkeys(data.images))}
+    templates.globals["alone"] = inside is not None
+    return templates.get_template("page.html.j2").render(
         page=data,
         policy=content_policy(style, script, images="'self'" if inside is None else "data:"),
         style=Markup(style),
@@ -78,16 +78,16 @@ def _data_uri(path: Path) -> str:
 
 def environment() -> Environment:
     """Templates of pages and charts; every text is escaped."""
-    made = Environment(
+    templates = Environment(
         loader=FileSystemLoader(_TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters["number"] = number
-    made.filters["squared"] = lambda text: re.sub(r"m2\b", "m²", text)
-    return made
+    templates.filters["number"] = number
+    templates.filters["squared"] = lambda text: re.sub(r"m2\b", "m²", text)
+    return templates
 
 
 def content_policy(style: str, script: str, *, images: str = "'self'") -> str:

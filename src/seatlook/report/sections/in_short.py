@@ -1,4 +1,4 @@
-"""What a page says before everything else: does it wrinkle, where, why, and does one see it."""
+"""The first sentences of a page: does it wrinkle, where, why, and is it visible."""
 
 from __future__ import annotations
 

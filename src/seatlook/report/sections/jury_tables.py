@@ -69,27 +69,27 @@ def calibration_rows(
         measures = {
             s.name: Measures(**{name: key[s.name][name] for name in MEASURES}) for s in stimuli
         }
-        found = calibrate(
+        calibration = calibrate(
             replace(ballots, questionnaire=replace(questionnaire, stimuli=stimuli)), measures
         )
     except KeyError as error:
         return {}, f"no {error} in the key"
     except InputError as error:
         return {}, str(error)
-    mean, low, high = found.advantage
+    mean, low, high = calibration.advantage
     figures: dict[str, Any] = {
-        f"held_out_log_likelihood_{name}": value for name, value in found.held_out.items()
+        f"held_out_log_likelihood_{name}": value for name, value in calibration.held_out.items()
     }
-    for name, link in found.links.items():
+    for name, link in calibration.links.items():
         figures |= {f"gain_{name}": link.gain, f"exponent_{name}": link.exponent}
     return {
         **figures,
         "advantage_over_log_ratio": mean,
         "advantage_low": low,
         "advantage_high": high,
-        "covers": len(found.geometries),
-        "votes": found.votes,
-        "verdict": found.verdict,
+        "covers": len(calibration.geometries),
+        "votes": calibration.votes,
+        "verdict": calibration.verdict,
     }, ""
 
 

@@ -63,8 +63,8 @@ def parameter_tables(scene: Scene) -> MappingProxyType[str, Table]:
 
 
 def parameter_toml(scene: Scene) -> MappingProxyType[str, str]:
-    """The same as TOML in the files' units, every digit kept, to copy into a scene or material."""
-    found = {
+    """The same as TOML in the files' units, with every digit, to copy into a scene or material."""
+    blocks = {
         "scene": "[mesh]\n"
         + "".join(_line(n, getattr(scene, n)) for n in ("element_size", "smallest_notch", "seed"))
         + "\n[wrinkle]\n"
@@ -72,13 +72,13 @@ def parameter_toml(scene: Scene) -> MappingProxyType[str, str]:
     }
     for m in {m.name: m for m in scene.materials.values()}.values():
         looks = _block("appearance", m.appearance)
-        found[f"cover {m.name}"] = _block("fabric", m.fabric) + "\n" + looks
+        blocks[f"cover {m.name}"] = _block("fabric", m.fabric) + "\n" + looks
     foam = scene.foam.material
-    found[f"foam {foam.name}"] = _block("foam", foam)
+    blocks[f"foam {foam.name}"] = _block("foam", foam)
     for name, appearance in scene.textures.items():
         if appearance is not None:
-            found[f"texture {name}"] = _block("appearance", appearance)
-    return MappingProxyType(found)
+            blocks[f"texture {name}"] = _block("appearance", appearance)
+    return MappingProxyType(blocks)
 
 
 def _block(name: str, values: Any) -> str:

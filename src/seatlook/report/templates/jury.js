@@ -18,10 +18,10 @@
   function read(key) {
     try { return JSON.parse(localStorage.getItem(key)); } catch { return memory[key] ?? null; }
   }
-  function keep(key, value) {
+  function store(key, value) {
     memory[key] = value;
     try { localStorage.setItem(key, JSON.stringify(value)); } catch {
-      notice("This browser keeps nothing: save your answers before you close the page.");
+      notice("This browser does not store your answers: save them before you close the page.");
     }
   }
   const trials = () => questionnaire.sessions[state.session].trials;
@@ -53,7 +53,7 @@
     const [question, , left, right] = trials()[number];
     open = false;
     get("question").textContent = questionnaire.questions[question];
-    get("said").textContent = `Pair ${number + 1} of ${trials().length}`;
+    get("status").textContent = `Pair ${number + 1} of ${trials().length}`;
     get("bar").value = number;
     get("back").disabled = number === 0;
     only("trial");
@@ -66,7 +66,7 @@
     try {
       await Promise.all(images.map((image) => image.decode()));
     } catch {
-      notice("A picture cannot be shown; please tell whoever sent you this page.");
+      notice("A picture cannot be shown. Please tell the person who sent you this page.");
       return;
     }
     if (state === null || state.votes.length !== number) return;
@@ -90,14 +90,14 @@
     const [question, , left, right] = trials()[number];
     const seconds = Math.round((performance.now() - shown) / 100) / 10;
     state.votes.push({ trial: number, question, left, right, choice, seconds });
-    keep(own(state.session), state);
+    store(own(state.session), state);
     get("saved").textContent = "";
     next();
   }
   function back() {
     if (get("trial").hidden || state.votes.length === 0) return;
     state.votes.pop();
-    keep(own(state.session), state);
+    store(own(state.session), state);
     show();
   }
   function begin(event) {
@@ -107,14 +107,14 @@
     if (!judge || !questionnaire.sessions[session]) return;
     const before = read(own(session));
     if (before && before.judge !== judge) {
-      notice(`Number ${session + 1} was taken by somebody else on this machine; take another one.`);
+      notice(`Number ${session + 1} is already used by another judge on this machine. Please take another one.`);
       get("session").focus();
       return;
     }
     notice("");
     state = before ?? { judge, session, votes: [] };
-    keep(own(session), state);
-    keep(root, session);
+    store(own(session), state);
+    store(root, session);
     next();
   }
   function save() {
@@ -128,7 +128,7 @@
     get("saved").textContent = `${state.votes.length} of ${trials().length} answers saved.`;
   }
   function other() {
-    keep(root, null);
+    store(root, null);
     state = null;
     get("start").reset();
     get("saved").textContent = "";

@@ -29,7 +29,7 @@
       image.alt = over ? `Over it: ${chosen(overlay.choice)}` : "";
       image.style.opacity = `${overlay.opacity.value}%`;
     }
-    get("said").textContent = `A: ${chosen(choice.a)}. B: ${chosen(choice.b)}.`
+    get("status").textContent = `A: ${chosen(choice.a)}. B: ${chosen(choice.b)}.`
       + (over ? ` Over both: ${chosen(overlay.choice)}.` : "");
     for (const light of all("[data-rig]")) {
       light.setAttribute("aria-pressed", String(get(choice.a.value).dataset.of === light.dataset.rig));
@@ -166,9 +166,9 @@
       image.dataset.sharedAlt ??= image.alt;
       image.src = get("shared").checked ? image.dataset.shared : own.src;
       image.alt = get("shared").checked ? image.dataset.sharedAlt : own.alt;
-      const said = image.closest("figure").querySelector(".range");
-      said.dataset.shared ??= said.textContent;
-      said.textContent = get("shared").checked ? said.dataset.shared : said.dataset.alone;
+      const label = image.closest("figure").querySelector(".range");
+      label.dataset.shared ??= label.textContent;
+      label.textContent = get("shared").checked ? label.dataset.shared : label.dataset.alone;
     }
     show();
   }
