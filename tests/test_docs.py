@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from cyclopts import App
 
-from seatlook import __version__
+import seatlook
 from seatlook.cli import app
 
 ROOT = Path(__file__).parents[1]
@@ -71,9 +71,9 @@ def spans_of(page: Path) -> list[str]:
 def options_of(words: list[str]) -> set[str]:
     """Return the options of the command that the first words name; KeyError if there is none."""
     command: App = app[words[0]]
-    if len(words) > 1 and words[1] in command:
+    if len(words) > 1 and words[1][0] != "-" and words[1] in command:
         command = command[words[1]]
-    if command.default_command is None:
+    if any(not name.startswith("-") for name in command):
         return {"--help"}
     arguments = command.assemble_argument_collection()
     return {"--help", "--quiet", *(name for argument in arguments for name in argument.names)}
@@ -154,7 +154,7 @@ def test_the_readmes_example_runs(demo_scene, tmp_path):
 def test_the_changelog_begins_with_this_version():
     versions = re.findall(r"^## (\S+) - (\d{4}-\d\d-\d\d)$", text_of(CHANGES), re.M)
     assert len(versions) == len(re.findall(r"^## ", text_of(CHANGES), re.M))
-    assert versions[0][0] == __version__
+    assert versions[0][0] == seatlook.__version__
     order = [(tuple(int(n) for n in number.split(".")), day) for number, day in versions]
     assert order == sorted(order, reverse=True)
 
@@ -203,3 +203,11 @@ def test_every_decision_has_three_parts_and_a_line_in_the_table():
         made += [f"{page.name}#{a}" for a in anchors_of(page, level=2)]
     assert sorted(listed) == sorted(made)
     assert len(made) >= 60
+
+
+def test_the_reference_lists_every_command_and_public_name():
+    reference = ROOT / "docs" / "reference"
+    rows = re.findall(r"^\| `seatlook (\w+)` \|", text_of(reference / "command-line.md"), re.M)
+    assert sorted(rows) == sorted(name for name in app if not name.startswith("-"))
+    spans = spans_of(reference / "python.md")
+    assert {f"seatlook.{name}" for name in seatlook.__all__} <= {*spans}
