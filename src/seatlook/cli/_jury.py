@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json as json_module
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
@@ -15,17 +14,14 @@ from seatlook.cli._run import Names, camera_of, load, narrowed, result_of
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.jury.questionnaire import Catch, Questionnaire
-    from seatlook.jury.stimuli import Shown
+    from seatlook.model import Scene
+    from seatlook.visibility.view import View
 
 _HELP = """Ask people: plan a jury, make its page, fit its votes.
 
 Example: seatlook jury plan --judges 20 --stimuli 9
 """
 jury = App(name="jury", help=_HELP)
-
-_FEW, _MANY = 8, 12
-_KEY = "jury.json"
 
 
 @jury.command
@@ -97,29 +93,21 @@ def export(
     ties
         Allow "equal" as an answer.
     """
-    from seatlook.jury.questionnaire import questionnaire_document, trials
+    from seatlook.jury.questionnaire import trials
+    from seatlook.jury.stimuli import draw_stimuli
     from seatlook.pbr import offscreen_backend
-    from seatlook.report.jury_page import write_jury_page
+    from seatlook.report.jury_page import KEY, PAGE, write_jury
 
     offscreen_backend()
-    cells, catches = _drawn(scenes, texture, rig, view, width_px, seed)
-    questionnaire = _questionnaire(cells, catches, title=title, ties=ties)
-    shown = [*cells, *(s for pair in catches for s in pair)]
-    for one in shown:
-        one.picture.save(out / "page" / _picture(one))
-    height, width = shown[0].picture.radiance.shape[:2]
-    page = write_jury_page(
-        questionnaire, out / "page", judges=judges, seed=seed, size=(width, height)
-    )
-    document = {
-        **questionnaire_document(questionnaire, judges=judges, seed=seed),
-        "key": _key(shown),
-    }
-    _write_key(document, out / _KEY)
-    say(f"page for the judges: {page}", f"key, not for them: {out / _KEY}")
+    with progress() as show:
+        covers = _covers(scenes, texture, rig, view, width_px)
+        stimuli = draw_stimuli(covers, seed=seed, progress=show)
+    say(*stimuli.notices)
+    questionnaire = write_jury(stimuli, out, title=title, judges=judges, seed=seed, ties=ties)
+    say(f"page for the judges: {out / PAGE / 'index.html'}", f"key, not for them: {out / KEY}")
     rows = [
-        ("stimuli", len(cells)),
-        ("catch_pairs", len(catches)),
+        ("stimuli", len(stimuli.cells)),
+        ("catch_pairs", len(stimuli.catches)),
         ("comparisons_per_judge", len(trials(questionnaire, seed))),
         ("sessions", judges),
         ("digest", questionnaire.digest),
@@ -150,21 +138,19 @@ def fit(
         Of the judges drawn again for the intervals.
     """
     from seatlook.jury.fit import fit_votes
-    from seatlook.jury.questionnaire import read_questionnaire
-    from seatlook.jury.votes import merge_votes
+    from seatlook.report.jury_page import read_jury, read_votes
     from seatlook.report.sections.jury_tables import calibration_rows, fit_tables, fit_values
 
-    document = _read_key(key)
-    questionnaire = read_questionnaire(document)
-    ballots = merge_votes({path: _text(path) for path in votes}, questionnaire)
+    questionnaire, pictures = read_jury(key)
+    ballots = read_votes(votes, questionnaire)
     for problem in ballots.problems:
         say(str(problem))
     questions = [q for q in questionnaire.questions if any(v.question == q for v in ballots.votes)]
     if not questions:
         raise InputError.single("votes", got="none that counts", expected="at least one")
     results = {question: fit_votes(ballots, question, seed=seed) for question in questions}
-    labels = {code: entry["label"] for code, entry in document["key"].items()}
-    calibrated, why_not = calibration_rows(ballots, document["key"])
+    labels = {code: entry["label"] for code, entry in pictures.items()}
+    calibrated, why_not = calibration_rows(ballots, pictures)
     if json:
         values = {q: fit_values(result, labels) for q, result in results.items()}
         show_json({"questions": values, "calibration": calibrated, "not_calibrated": why_not})
@@ -180,107 +166,18 @@ def fit(
         say(f"not calibrated: {why_not}")
 
 
-def _drawn(
+def _covers(
     scenes: Sequence[Path],
     textures: tuple[str, ...],
     rigs: tuple[str, ...],
     view: str | None,
     width: int,
-    seed: int,
-) -> tuple[list[Shown], list[tuple[Shown, Shown]]]:
-    """Draw every cell of every scene, and catch pairs of the first scene that yields any."""
-    from seatlook import io
-    from seatlook.jury import stimuli
+) -> Iterator[tuple[str, Scene, View]]:
+    """Open one scene after the other with its result; scenes of one name differ by their folder."""
+    from seatlook.jury.stimuli import jury_view
 
-    if not scenes:
-        raise InputError.single("scenes", got="none", expected="a scene file or more")
-    cells: list[Shown] = []
-    catches: list[tuple[Shown, Shown]] = []
-    black = io.read_material("black-leather").appearance
-    names = [path.parent.name if len(scenes) > 1 else "" for path in scenes]
-    with progress() as show:
-        for path, folder in zip(scenes, names, strict=True):
-            scene = narrowed(load(path), textures, rigs)
-            solution = result_of(scene, path.with_name("result.npz"))
-            jury_view = stimuli.jury_view(solution, camera_of(scene, view), width=width)
-            name = f"{scene.name} ({folder})" if folder else scene.name
-            show("draw", scene=name)
-            cells += stimuli.shown_cells(scene, jury_view, name=name, seed=seed)
-            if not catches:
-                show("draw", scene=name, what="catch pairs")
-                pairs = [
-                    stimuli.catch_pair(jury_view, black, lights, seed=seed)
-                    for lights in stimuli.catch_rigs(scene, jury_view.camera)
-                ]
-                catches = [pair for pair in pairs if pair is not None]
-    if not catches:
-        say("no catch pair: raised by 32 mm these wrinkles would still be missed; judges cannot be")
-        say("screened")
-    return cells, catches
-
-
-def _questionnaire(
-    cells: list[Shown], catches: list[tuple[Shown, Shown]], *, title: str, ties: bool
-) -> Questionnaire:
-    """Make the questionnaire; say so if it is too long or too short to screen judges."""
-    from seatlook.jury.questionnaire import Catch, Questionnaire, Stimulus
-
-    if not _FEW <= len(cells) <= _MANY:
-        say(f"{len(cells)} pictures; {_FEW} to {_MANY} screen judges without tiring them")
-
-    def stimulus(one: Shown) -> Stimulus:
-        # A judge who reads the source must not learn which cover is which.
-        return Stimulus(name=one.code, picture=_picture(one), geometry="")
-
-    pairs: tuple[Catch, ...] = tuple(
-        Catch(wrinkled=stimulus(wrinkled), smooth=stimulus(smooth)) for wrinkled, smooth in catches
-    )
-    return Questionnaire(
-        title=title, stimuli=tuple(stimulus(one) for one in cells), catches=pairs, ties=ties
-    )
-
-
-def _key(shown: list[Shown]) -> dict[str, dict[str, Any]]:
-    """What the judges do not see, by code."""
-    return {
-        one.code: {
-            "label": one.label,
-            "geometry": one.geometry,
-            "texture": one.texture,
-            "rig": one.rig,
-            **(asdict(one.measures) if one.measures else {}),
-        }
-        for one in shown
-    }
-
-
-def _picture(one: Shown) -> str:
-    return f"images/{one.code}.png"
-
-
-def _write_key(document: dict[str, Any], path: Path) -> None:
-    from seatlook import files
-
-    files.write_text(path, json_module.dumps(document, indent=1) + "\n")
-
-
-def _read_key(path: Path) -> dict[str, Any]:
-    """Read jury.json; its labels must be there."""
-    try:
-        document = json_module.loads(_text(path))
-    except json_module.JSONDecodeError as error:
-        raise InputError.single(
-            "file", got=error.msg, expected="JSON", file=path, line=error.lineno
-        ) from error
-    if not isinstance(document, dict) or not isinstance(document.get("key"), dict):
-        raise InputError.single(
-            "key", got="none", expected='the "jury.json" of "seatlook jury export"', file=path
-        )
-    return document
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError.single("file", got="bytes", expected="UTF-8 text", file=path) from error
+    for path in scenes:
+        scene = narrowed(load(path), textures, rigs)
+        solution, folder = result_of(scene, path.with_name("result.npz")), path.parent.name
+        name = f"{scene.name} ({folder})" if len(scenes) > 1 and folder else scene.name
+        yield name, scene, jury_view(solution, camera_of(scene, view), width=width)

@@ -125,7 +125,14 @@ def questionnaire_document(
     """Everything a page needs to ask the jury, as plain JSON values.
 
     One session per judge, drawn from ``seed``; a judge takes a session that nobody took before.
+
+    Raises
+    ------
+    InputError
+        No judge.
     """
+    if judges < 1:
+        raise InputError.single("judges", got=judges, expected="1 or more")
     seeds = [seed + k for k in range(judges)]
     sessions = [
         {

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
+from seatlook import io
+from seatlook.errors import InputError
+from seatlook.jury.questionnaire import Catch, Questionnaire, Stimulus
 from seatlook.model import Appearance, Camera, Rig, Scene, Solution
+from seatlook.model.progress import Progress, silent
 from seatlook.pbr import Image
 from seatlook.visibility.cross_check import Measures
 from seatlook.visibility.heights import amplified, peak_to_valley, reference_rig
+from seatlook.visibility.scoring import BLACK
 from seatlook.visibility.view import View, luminance
 from seatlook.visibility.vwi import score
 
@@ -18,6 +24,7 @@ from seatlook.visibility.vwi import score
 CATCH_HEIGHT = 0.001  # [m]
 CATCH_VWI = 10.0
 _HIGHEST = 0.032  # [m]
+FEWEST, MOST = 8, 12  # pictures that screen judges without tiring them
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +46,107 @@ class Shown:
     picture: Image
     measures: Measures | None
 
+    @property
+    def path(self) -> str:
+        """Of the picture, from the page of the judges."""
+        return f"images/{self.code}.png"
+
+    @property
+    def stimulus(self) -> Stimulus:
+        """What the page holds: a judge who reads its source must not learn which cover it is."""
+        return Stimulus(name=self.code, picture=self.path, geometry="")
+
+    @property
+    def key(self) -> dict[str, Any]:
+        """What the judges do not see."""
+        names = {"label": self.label, "geometry": self.geometry}
+        names |= {"texture": self.texture, "rig": self.rig}
+        return names | (asdict(self.measures) if self.measures else {})
+
+
+Pair = tuple[Shown, Shown]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stimuli:
+    """All pictures of a questionnaire.
+
+    Parameters
+    ----------
+    cells : the pictures that are ranked
+    catches : (wrinkled, smooth), the pairs that screen judges
+    """
+
+    cells: tuple[Shown, ...]
+    catches: tuple[Pair, ...]
+
+    @property
+    def shown(self) -> tuple[Shown, ...]:
+        """Every picture, ranked or not."""
+        return (*self.cells, *(one for pair in self.catches for one in pair))
+
+    @property
+    def key(self) -> dict[str, dict[str, Any]]:
+        """What the judges do not see, by code."""
+        return {one.code: one.key for one in self.shown}
+
+    @property
+    def notices(self) -> Iterator[str]:
+        """What makes the answers of these judges less certain."""
+        if not self.catches:
+            yield (
+                f"no catch pair: even {1e3 * _HIGHEST:g} mm high these wrinkles would be missed, "
+                "so judges cannot be screened"
+            )
+        if not FEWEST <= len(self.cells) <= MOST:
+            yield (
+                f"{len(self.cells)} pictures; {FEWEST} to {MOST} screen judges without tiring them"
+            )
+
+    def questionnaire(self, *, title: str, ties: bool = False) -> Questionnaire:
+        """Ask for these pictures; see :class:`seatlook.jury.questionnaire.Questionnaire`."""
+        return Questionnaire(
+            title=title,
+            stimuli=tuple(cell.stimulus for cell in self.cells),
+            catches=tuple(
+                Catch(wrinkled=wrinkled.stimulus, smooth=smooth.stimulus)
+                for wrinkled, smooth in self.catches
+            ),
+            ties=ties,
+        )
+
+
+def draw_stimuli(
+    covers: Iterable[tuple[str, Scene, View]], *, seed: int, progress: Progress = silent
+) -> Stimuli:
+    """Draw every cell of every cover, and catch pairs of the first cover that has any.
+
+    Parameters
+    ----------
+    covers : name, scene, and view of its solution, see :func:`jury_view`; taken one by one
+    seed : of the code names
+
+    Raises
+    ------
+    InputError
+        No cover.
+    """
+    cells: list[Shown] = []
+    catches: list[Pair] = []
+    black = io.read_material(BLACK).appearance
+    for name, scene, view in covers:
+        progress("draw", scene=name)
+        cells += shown_cells(scene, view, name=name, seed=seed)
+        if not catches:
+            progress("draw", scene=name, what="catch pairs")
+            pairs = [
+                catch_pair(view, black, rig, seed=seed) for rig in catch_rigs(scene, view.camera)
+            ]
+            catches = [pair for pair in pairs if pair is not None]
+    if not cells:
+        raise InputError.single("scenes", got="none", expected="a scene file or more")
+    return Stimuli(cells=tuple(cells), catches=tuple(catches))
+
 
 def shown_cells(scene: Scene, view: View, *, name: str, seed: int) -> Iterator[Shown]:
     """Draw and score every texture of a scene under every rig, as seen by ``view``."""
@@ -57,7 +165,7 @@ def shown_cells(scene: Scene, view: View, *, name: str, seed: int) -> Iterator[S
             )
 
 
-def catch_pair(view: View, black: Appearance, rig: Rig, *, seed: int) -> tuple[Shown, Shown] | None:
+def catch_pair(view: View, black: Appearance, rig: Rig, *, seed: int) -> Pair | None:
     """Draw black leather with its wrinkles raised beside the same without any.
 
     Returns

@@ -1,19 +1,90 @@
-"""The jury page: paired comparisons in a browser, offline, without names or scores."""
+"""The jury page: paired comparisons in a browser, offline, without names or scores; and its key."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup
 
 from seatlook import files
 from seatlook.errors import InputError
 from seatlook.jury.plan import SECONDS_PER_TRIAL
-from seatlook.jury.questionnaire import Questionnaire, questionnaire_document
+from seatlook.jury.questionnaire import (
+    Questionnaire,
+    questionnaire_document,
+    read_questionnaire,
+)
+from seatlook.jury.stimuli import Stimuli
+from seatlook.jury.votes import Ballots, merge_votes
 from seatlook.report.page.write import content_policy, environment
 
+Key = Mapping[str, Mapping[str, Any]]
+PAGE, KEY = "page", "jury.json"
 _TEMPLATES = Path(__file__).parent / "templates"
+
+
+def write_jury(
+    stimuli: Stimuli, folder: Path, *, title: str, judges: int, seed: int, ties: bool = False
+) -> Questionnaire:
+    """Write the folder "page" for the judges, and beside it the key, which is not for them.
+
+    Parameters
+    ----------
+    title : what the judges read above the pictures
+    judges : sessions to choose from
+    seed : of order and sides
+    ties : whether "equal" may be answered
+
+    Raises
+    ------
+    InputError
+        See :class:`Questionnaire`; no judge.
+    """
+    questionnaire = stimuli.questionnaire(title=title, ties=ties)
+    document = questionnaire_document(questionnaire, judges=judges, seed=seed)
+    for one in stimuli.shown:
+        one.picture.save(folder / PAGE / one.path)
+    height, width = stimuli.shown[0].picture.radiance.shape[:2]
+    write_jury_page(questionnaire, folder / PAGE, judges=judges, seed=seed, size=(width, height))
+    key = json.dumps({**document, "key": stimuli.key}, indent=1)
+    files.write_text(folder / KEY, key + "\n")
+    return questionnaire
+
+
+def read_jury(path: Path) -> tuple[Questionnaire, Key]:
+    """Read the key that :func:`write_jury` wrote: the questionnaire, and its pictures by code.
+
+    Raises
+    ------
+    InputError
+        Not such a file.
+    """
+    try:
+        document = json.loads(_text(path))
+    except json.JSONDecodeError as error:
+        raise InputError.single(
+            "file", got=error.msg, expected="JSON", file=path, line=error.lineno
+        ) from error
+    if not isinstance(document, dict) or not isinstance(document.get("key"), dict):
+        raise InputError.single(
+            "key", got="none", expected='the "jury.json" of "seatlook jury export"', file=path
+        )
+    return read_questionnaire(document), document["key"]
+
+
+def read_votes(paths: Iterable[Path], questionnaire: Questionnaire) -> Ballots:
+    """Read the files that the judges saved; see :func:`seatlook.jury.votes.merge_votes`."""
+    return merge_votes({path: _text(path) for path in paths}, questionnaire)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError.single("file", got="bytes", expected="UTF-8 text", file=path) from error
 
 
 def write_jury_page(
@@ -45,8 +116,6 @@ def write_jury_page(
             expected="every picture written before the page",
             file=folder,
         )
-    if judges < 1:
-        raise InputError.single("judges", got=judges, expected="1 or more")
     style = (_TEMPLATES / "jury.css").read_text(encoding="utf-8")
     script = (_TEMPLATES / "jury.js").read_text(encoding="utf-8")
     document = questionnaire_document(questionnaire, judges=judges, seed=seed)
