@@ -33,6 +33,10 @@ class Minimiser(Protocol):
         ...
 
 
+# A new method is one class here. "newton" differs by the matrix that it is given.
+MINIMISERS: dict[str, Callable[[tuple[int, int]], Minimiser]] = {"lbfgs": Lbfgs, "newton": Lbfgs}
+
+
 def method_of(method: MethodName | Explicit) -> Method:
     """Return the method of a name; "explicit" is ``Explicit()``.
 
@@ -47,10 +51,11 @@ def method_of(method: MethodName | Explicit) -> Method:
     """
     if method == "explicit":
         return Explicit()
-    if method in ("lbfgs", "newton") or isinstance(method, Explicit):
+    if isinstance(method, Explicit) or method in MINIMISERS:
         return method
+    names = ", ".join(map(repr, MINIMISERS))
     raise InputError.single(
-        "method", got=repr(method), expected="'lbfgs', 'newton', 'explicit' or Explicit(...)"
+        "method", got=repr(method), expected=f"{names}, 'explicit' or Explicit(...)"
     )
 
 
@@ -58,4 +63,4 @@ def minimiser(method: Method, shape: tuple[int, int], mass: FloatArray | None = 
     """Return what minimises over unknowns of ``shape``; ``mass`` is real, of the same shape."""
     if isinstance(method, Explicit):
         return DampedDynamics(shape, method, mass)
-    return Lbfgs(shape)
+    return MINIMISERS[method](shape)

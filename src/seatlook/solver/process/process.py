@@ -286,7 +286,7 @@ class Process:
         """Matrix for a method that wants one, of the positions and what lies below."""
         if self._nearest is not None:
             return Renewed(partial(self._projected, self._nearest))
-        if self.method != "lbfgs":
+        if isinstance(self.method, Explicit):
             return None
         return sheet() if self.foundation is None else self.foundation.extend(sheet())
 

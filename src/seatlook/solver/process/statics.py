@@ -13,6 +13,7 @@ from seatlook.solver.element.elastic import ElasticSheet
 from seatlook.solver.energy import Energy
 from seatlook.solver.kernels.lbfgs import largest_row
 from seatlook.solver.methods.choice import Method, minimiser
+from seatlook.solver.methods.explicit import Explicit
 from seatlook.solver.methods.factor import Factor, Preconditioner, SplitFactor
 from seatlook.solver.methods.lbfgs import Potential as Sum
 from seatlook.solver.methods.newton import (
@@ -51,7 +52,7 @@ def equilibrium(
     max_iterations : ``MOST`` of the method if not given; that of L-BFGS once Newton's has buckled
     """
     name = method if isinstance(method, str) else "explicit"
-    most = MOST[name] if max_iterations is None else max_iterations
+    most = MOST.get(name, MOST["lbfgs"]) if max_iterations is None else max_iterations
     if method == "newton":
         found = _by_newton(sheet, potential, x, tolerance, most)
         most = MOST["lbfgs"] if max_iterations is None else most
@@ -143,11 +144,11 @@ def _descend(
 def _matrix(
     sheet: ElasticSheet, potential: Potential, x: FloatArray, method: Method
 ) -> _FreeFactor | None:
-    """What stands for the Hessian in L-BFGS."""
-    if method == "lbfgs":
-        return _split(sheet, potential, x)
-    if method != "newton":
+    """What stands for the Hessian in a minimiser; the explicit method needs nothing."""
+    if isinstance(method, Explicit):
         return None
+    if method != "newton":
+        return _split(sheet, potential, x)
     terms = (*potential.elastic, *potential.others)
     parts = [term.hessian(x, definite=True) for term in terms]
     full = csc_array(sum(parts[1:], parts[0]))
