@@ -78,6 +78,12 @@ def test_public_names_exist_and_are_told_once():
         _ = package.rendr
 
 
+def test_no_room_has_the_name_of_a_public_name():
+    """A package and a function of one name hide each other, by what is imported first."""
+    rooms = {path.stem for path in (ROOT / "src" / "seatlook").iterdir()}
+    assert not rooms & {*importlib.import_module("seatlook").__all__}
+
+
 def test_no_import_goes_in_a_circle():
     """Imports inside functions and imports for types count as well."""
     assert [c for c in circles(import_graph(PACKAGE)) if c != KNOWN_CIRCLE] == []
