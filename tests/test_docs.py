@@ -98,6 +98,22 @@ def test_files_it_names_exist(page):
         assert "NAME" in module or any(file.endswith(f"/{module}") for file in MODULES), module
 
 
+def test_pages_that_the_source_names_exist():
+    files = [
+        file
+        for folder in ("src", "tests", "gallery", "materials")
+        for file in (ROOT / folder).rglob("*")
+        if file.suffix in (".py", ".toml", ".j2", ".js")
+    ]
+    named = {
+        page
+        for file in [*files, ROOT / "pyproject.toml", ROOT / "Makefile"]
+        for page in re.findall(r"\bdocs/[\w/-]+\.md\b", text_of(file))
+    }
+    assert len(named) >= 5
+    assert {page for page in named if not (ROOT / page).exists()} == set()
+
+
 @every_page
 def test_python_names_it_gives_exist(page):
     names = {name for span in spans_of(page) for name in NAME.findall(span)}
@@ -211,3 +227,24 @@ def test_the_reference_lists_every_command_and_public_name():
     assert sorted(rows) == sorted(name for name in app if not name.startswith("-"))
     spans = spans_of(reference / "python.md")
     assert {f"seatlook.{name}" for name in seatlook.__all__} <= {*spans}
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        p
+        for p in sorted({*PAGES} - {CHANGES})
+        if not {"method", "measurements", "decisions", "tests"} & {*p.parts[-3:]}
+    ],
+    ids=lambda page: str(page.relative_to(ROOT)),
+)
+def test_pages_for_users_are_plain(page):
+    """Short sentences, and none of the words that the glossary replaces."""
+    prose = re.sub(r"^\|.*$|^#.*$|^ {4}.*$", "", prose_of(page), flags=re.M)
+    words = r"\b(?:is|are|be) told\b|by how much|way down|\bclay\b|standoff|\bstarved\b|\bfacets\b"
+    assert not re.search(words, prose, re.I)
+    blocks = re.split(r"\n\s*\n|\n(?=\s*(?:[-*]|\d\.) )", re.sub(r"`[^`]*`|\([^)]*\)", "x", prose))
+    sentences = [
+        s for block in blocks for s in re.split(r"(?<=[.!?:;])\s+", " ".join(block.split()))
+    ]
+    assert max((len(sentence.split()) for sentence in sentences), default=0) <= 28
