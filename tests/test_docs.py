@@ -198,6 +198,20 @@ def test_the_index_has_a_line_for_every_room():
     assert set(re.findall(r"^\| `(\w+)` \|", text, re.M)) == rooms
 
 
+def test_the_index_answers_with_the_file_in_which_a_name_is_defined():
+    index = ROOT / "docs" / "index.md"
+    rows = re.findall(r"^\| (?:Where|What|Who) .*$", text_of(index), re.M)
+    answered = 0
+    for row in rows:
+        files = [text_of(index.parent / link) for link, _ in LINK.findall(row) if "src/" in link]
+        for name in NAME.findall(row):
+            own = name.rpartition(".")[2]
+            defined = re.compile(rf"^(?:def|class) {own}\b|^{own}\b.*=", re.M)
+            assert any(defined.search(file) for file in files), name
+            answered += 1
+    assert answered >= 6
+
+
 def test_every_page_is_reached_from_the_index():
     index = ROOT / "docs" / "index.md"
     linked = {(index.parent / target).resolve() for target, _ in LINK.findall(text_of(index))}
