@@ -18,7 +18,7 @@ def pressed(depth, *, h=0.02, size=0.16):
     X, T, x = sheet(size, size, h, z=0.0005 - depth, at=(-0.5 * size, -0.5 * size))
     c = cover([(X, T, x)], foam=flat_foam(size=0.4), h=h)
     ties = Ties(c, np.ones(len(X)))
-    foundation = Foundation(c, c.foam, np.zeros(len(X), dtype=np.int64), ties)
+    foundation = Foundation(c, c.foam, np.zeros(len(X), dtype=np.int64), ties.points("seam"))
     state = np.zeros((len(X) + settled_rows(len(X)), 3))
     state[: len(X)] = x
     foundation.begin(state)

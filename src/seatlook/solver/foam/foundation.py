@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import csc_array
 
 from seatlook.model import Cover, FloatArray, Foam, IntArray
 from seatlook.solver.energy import Energy
@@ -11,7 +12,6 @@ from seatlook.solver.foam.distance import distance_field
 from seatlook.solver.foam.friction import Friction
 from seatlook.solver.foam.settlement import SettledFactor, Settlement
 from seatlook.solver.methods.factor import Factor, Preconditioner
-from seatlook.solver.process.ties import Ties
 
 
 class Foundation:
@@ -20,10 +20,10 @@ class Foundation:
     Parameters
     ----------
     panel : (n,) int64   panel of each vertex
-    ties : the seams among them keep the settlement of both sides level
+    seams : (k, n) sparse       weights of points sewn together, whose settlement is one
     """
 
-    def __init__(self, cover: Cover, foam: Foam, panel: IntArray, ties: Ties) -> None:
+    def __init__(self, cover: Cover, foam: Foam, panel: IntArray, seams: csc_array) -> None:
         fabrics = [material.fabric for material in cover.materials]
         half = np.array([0.5 * f.thickness for f in fabrics])
         springs = np.array([wave_stiffness(f, foam.material) for f in fabrics])
@@ -35,9 +35,7 @@ class Foundation:
         below = half[panel] if cover.hem is None else half[panel] + cover.hem.lift
         self.contact = FoamContact(field, below, springs[panel], area)
         self.friction = Friction(self.contact, foam.material.friction)
-        self.settlement = Settlement(
-            self.contact, cover, foam.material, waves[panel], ties.points("seam")
-        )
+        self.settlement = Settlement(self.contact, cover, foam.material, waves[panel], seams)
 
     @property
     def energies(self) -> tuple[Energy, ...]:

@@ -94,7 +94,7 @@ class Process:
         self.foundation: Foundation | None = None
         n = len(cover.rest)
         if cover.foam is not None:
-            self.foundation = Foundation(cover, cover.foam, self.panel, self.ties)
+            self.foundation = Foundation(cover, cover.foam, self.panel, self.ties.points("seam"))
         below = () if self.foundation is None else self.foundation.energies
         self._outer = Potential([self.gravity, self.ties, *below])
         sheet = [OfPositions(energy, n) for energy in self.sheet.energies]
