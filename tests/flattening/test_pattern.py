@@ -37,7 +37,7 @@ def test_no_allowance_is_the_sew_line():
 def test_bad_allowances_are_named():
     pocket = [[0, 0], [1, 0], [1, 1], [0.54, 1], [0.8, 0.5], [0.2, 0.5], [0.46, 1], [0, 1]]
     with pytest.raises(
-        InputError, match="allowance: got 10 mm, expected a cutting line that stays"
+        InputError, match="allowance: got 10 mm, expected a cutting line that does not meet"
     ):
         cut_outline(0.1 * np.array(pocket), 0.01)
     with pytest.raises(InputError, match=r"allowance: got -0\.01, expected at least 0"):

@@ -253,7 +253,7 @@ def test_metal_has_neither_nap_nor_coat(tmp_path, problems):
     path = tmp_path / "foil.toml"
     path.write_text(LEATHER.replace(LOOK, LOOK + 'maps = "foil"\nmaps_width_mm = 50\n'))
     (message,) = problems(read_material, path)
-    assert "got a metalness map below a coat or a nap, expected one of them" in message
+    assert "got a metalness map below a coat or a sheen, expected one of them" in message
 
 
 def test_a_scene_shares_the_maps_of_a_material_and_counts_them_in_its_digest(tmp_path):

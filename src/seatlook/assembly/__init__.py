@@ -1,4 +1,4 @@
-"""Pattern + foam + materials -> Cover: mesh the panels, pose them, say what pulls on what."""
+"""Pattern + foam + materials -> Cover: mesh the panels, pose them, list what pulls on what."""
 
 from __future__ import annotations
 

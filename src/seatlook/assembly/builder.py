@@ -85,8 +85,8 @@ class Builder:
 
     def _stops(self, panel: Panel) -> list[int]:
         """Outline vertices that stay mesh vertices: ends of named edges and sharp corners."""
-        mine = [e for e in self.pattern.edges.values() if e.panel == panel.name]
-        ends = sorted({k for e in mine for k in (e.start, e.end)})
+        edges = [e for e in self.pattern.edges.values() if e.panel == panel.name]
+        ends = sorted({k for e in edges for k in (e.start, e.end)})
         outline = panel.outline
         ahead = np.roll(outline, -1, axis=0) - outline
         behind = outline - np.roll(outline, 1, axis=0)
@@ -131,17 +131,17 @@ class Builder:
         a, b = [], []
         weight = []
         total_a, total_b = near[0].length, sum(ln.length for ln in far)
-        done = 0.0
+        start = 0.0
         for side in far:
             share = side.length / total_b
             span = share * total_a
             pitch = max(seam.pitch, side.spacing, near[0].spacing * span / max(span, 1e-12))
             at, length = stitches(share, total_a, pitch)
-            met = np.interp(done + at, knots_b, knots_a)
-            a.append(near[0].points(total_a * met))
+            share_a = np.interp(start + at, knots_b, knots_a)
+            a.append(near[0].points(total_a * share_a))
             b.append(side.points(at / share * side.length))
             weight.append(length)
-            done += share
+            start += share
         return Stitching(
             name=seam.name, a=join(a), b=join(b), length=np.concatenate(weight), stage=stage.name
         )

@@ -1,4 +1,4 @@
-"""Ease: by how much one side of a seam is longer, and where notches say that it goes."""
+"""Ease: how much longer one side of a seam is, and between which notches it lies."""
 
 from __future__ import annotations
 
@@ -86,24 +86,24 @@ def seam_ease(pattern: Pattern, seam: Seam) -> SeamEase:
 
 def _side(pattern: Pattern, names: list[str], *, reverse: bool) -> tuple[float, FloatArray]:
     """Length [m] of edges run through one after the other, and the shares of their notches."""
-    done, found = 0.0, []
+    total, places = 0.0, []
     for name in names:
         length = pattern.edge_length(name)
         at = notches_on(pattern, name)
-        found.append(done + (length - at if reverse else at))
-        done += length
-    at = np.sort(np.concatenate(found))
-    return done, at[(at > _AT_END) & (at < done - _AT_END)] / done
+        places.append(total + (length - at if reverse else at))
+        total += length
+    at = np.sort(np.concatenate(places))
+    return total, at[(at > _AT_END) & (at < total - _AT_END)] / total
 
 
 def notches_on(pattern: Pattern, name: str) -> FloatArray:
     """Arc lengths (k,) [m] of the notches of an edge."""
     panel = pattern.panel(pattern.edges[name].panel)
-    mine = [e.name for e in pattern.edges.values() if e.panel == panel.name]
-    found = []
+    edges = [e.name for e in pattern.edges.values() if e.panel == panel.name]
+    arcs = []
     for notch in panel.notches:
-        places = {edge: nearest_place(pattern.edge_points(edge), notch.position) for edge in mine}
-        distance, at = places[name]
-        if distance < _WIDEST_ALLOWANCE and distance <= min(d for d, _ in places.values()):
-            found.append(at)
-    return np.array(found)
+        nearest = {edge: nearest_place(pattern.edge_points(edge), notch.position) for edge in edges}
+        distance, at = nearest[name]
+        if distance < _WIDEST_ALLOWANCE and distance <= min(d for d, _ in nearest.values()):
+            arcs.append(at)
+    return np.array(arcs)

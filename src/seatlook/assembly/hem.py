@@ -90,11 +90,11 @@ def hem_of(builder: Builder, scene: Scene, uv: FloatArray, faces: IntArray) -> H
         if sewn is None:
             continue
         fabric = scene.materials[panel.name].fabric
-        mine = np.flatnonzero(owner[faces[:, 0]] == i)
-        share, nearest = _coverage(uv[faces[mine]], sewn)
+        rows = np.flatnonzero(owner[faces[:, 0]] == i)
+        share, nearest = _coverage(uv[faces[rows]], sewn)
         tangent = _in_grain(sewn.along[nearest], panel)
-        bending[mine] = share[:, None, None] * strip_bending(fabric, tangent)
-        density[mine] = share * fabric.density
+        bending[rows] = share[:, None, None] * strip_bending(fabric, tangent)
+        density[rows] = share * fabric.density
         vertices = np.flatnonzero(owner == i)
         distance, at = _nearest(sewn, uv[vertices])
         lift[vertices] = fabric.thickness * _ramp(
@@ -195,10 +195,10 @@ class _Side:
 def _side(
     builder: Builder, scene: Scene, names: Sequence[str], lines: Sequence[Line], uv: FloatArray
 ) -> _Side:
-    done = np.cumsum([0.0, *(line.length for line in lines)])
+    starts = np.cumsum([0.0, *(line.length for line in lines)])
     ends, edges, stiffness = [], [], []
-    for name, line, start in zip(names, lines, done, strict=False):
-        ends.append((start + np.column_stack([line.arc[:-1], line.arc[1:]])) / done[-1])
+    for name, line, start in zip(names, lines, starts, strict=False):
+        ends.append((start + np.column_stack([line.arc[:-1], line.arc[1:]])) / starts[-1])
         edges.append(np.column_stack([line.vertices[:-1], line.vertices[1:]]))
         panel = builder.pattern.panel(builder.pattern.edges[name].panel)
         step = np.diff(uv[line.vertices], axis=0)

@@ -1,4 +1,4 @@
-"""Poses for the panels of a scene that says none."""
+"""Poses for the panels of a scene that gives none."""
 
 from __future__ import annotations
 

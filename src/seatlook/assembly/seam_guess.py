@@ -2,7 +2,7 @@
 
 A pattern file says nothing about sewing. Two edges that are sewn have nearly the same length,
 their notches meet, and their ends meet the ends of seams already found; where several edges would
-do, the one that keeps both grain lines in one direction is taken. The guess is to be read over.
+do, the one that keeps both grain lines in one direction is taken. Check the guess.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ class _Sewing:
     any_notch: bool
     twins: frozenset[frozenset[str]]
     sides: dict[str, tuple[float, FloatArray]]
-    left: list[str] = field(default_factory=list)
+    free: list[str] = field(default_factory=list)
     meets: dict[tuple[str, int], tuple[str, int]] = field(default_factory=dict)
     seams: list[_Match] = field(default_factory=list)
 
@@ -108,9 +108,9 @@ class _Sewing:
     def runs(self) -> Iterator[tuple[str, ...]]:
         """Edges in a row round the border of what is sewn so far."""
         following: dict[tuple[str, int], list[str]] = {}
-        for name in self.left:
+        for name in self.free:
             following.setdefault(self.corner(name, end=False), []).append(name)
-        for name in self.left:
+        for name in self.free:
             run: tuple[str, ...] = (name,)
             yield run
             while len(run) < _RUN:
@@ -134,13 +134,13 @@ class _Sewing:
         notched = _notches_meet(near, far)
         twins = any(frozenset((edges[a].panel, edges[x].panel)) in self.twins for x in b)
         both = len(near.notches) > 0 and len(far.notches) > 0
-        refused = (
+        unfit = (
             abs(near.length / far.length - 1) > limit
             or (self.any_notch and not both)
             or ((len(run) > 1 or twins) and not notched + corners)
             or (twins and not corners)
         )
-        if refused:
+        if unfit:
             return None
         return _Match(
             a=a, b=b, near=near, far=far, corners=corners, notched=notched,
@@ -149,13 +149,13 @@ class _Sewing:
 
     def side(self, names: Sequence[str], *, reverse: bool) -> _Side:
         """Measure edges in a row, each turned round if ``reverse``."""
-        done, notches, joints = 0.0, [], []
+        total, notches, joints = 0.0, [], []
         for name in names:
             length, at = self.sides[name]
-            notches.append(done + (length - at[::-1] if reverse else at))
-            done += length
-            joints.append(done)
-        return _Side(done, np.concatenate(notches), np.array(joints[:-1]))
+            notches.append(total + (length - at[::-1] if reverse else at))
+            total += length
+            joints.append(total)
+        return _Side(total, np.concatenate(notches), np.array(joints[:-1]))
 
     def sew(self, match: _Match) -> None:
         """Take the edges out and let their corners meet."""
@@ -165,7 +165,7 @@ class _Sewing:
         ]
         for one, other in pairs:
             self.meets[one] = other
-        self.left = [name for name in self.left if name not in (match.a, *match.b)]
+        self.free = [name for name in self.free if name not in (match.a, *match.b)]
         self.seams.append(match)
 
 
@@ -186,9 +186,9 @@ def propose_seams(panels: Sequence[Panel]) -> Proposal:
     pattern = Pattern(panels=tuple(panels), edges=edges, seams=())
     notched = any(panel.notches for panel in panels)
     sides = {name: (pattern.edge_length(name), _inner_notches(pattern, name)) for name in edges}
-    sewing = _Sewing(pattern, notched, _twins(panels, sides, edges), sides, left=list(edges))
+    sewing = _Sewing(pattern, notched, _twins(panels, sides, edges), sides, free=list(edges))
     rivals: dict[str, tuple[str, ...]] = {}
-    # Single edges first; each seam that is found tells more about its neighbours.
+    # Single edges first; each seam found narrows the choice for its neighbours.
     for longest in (1, _RUN):
         while matches := list(_matches(sewing, longest)):
             best, also = _surest(matches)
@@ -203,7 +203,7 @@ def propose_seams(panels: Sequence[Panel]) -> Proposal:
         ),
         reasons=MappingProxyType({names[m.a]: _reason(m) for m in sewing.seams}),
         rivals=MappingProxyType({k: v for k, v in rivals.items() if v}),
-        free=tuple(sewing.left),
+        free=tuple(sewing.free),
     )
 
 
@@ -228,7 +228,7 @@ def _matches(sewing: _Sewing, longest: int) -> Iterator[_Match]:
     for run in sewing.runs():
         if len(run) > longest:
             continue
-        for a in sewing.left:
+        for a in sewing.free:
             # Of two single edges, one order is enough.
             if len(run) == 1 and a > run[0]:
                 continue

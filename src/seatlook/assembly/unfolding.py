@@ -80,11 +80,11 @@ def lay_out(
         poses[hinge.hung] = _folded(pattern, hinge, poses[hinge.placed], field)
         depth[hinge.hung] = depth[hinge.placed] + 1
         fall[hinge.hung] = _height(foam, _seam_middle(hinge, poses[hinge.placed]))
-    alone = [name for name in names if name not in poses]
-    if alone:
+    unsewn = [name for name in names if name not in poses]
+    if unsewn:
         raise InputError.single(
             "seams",
-            got=f"none that joins {', '.join(alone)} to {top}",
+            got=f"none that joins {', '.join(unsewn)} to {top}",
             expected="every panel sewn to another",
             hint="complete the seams file, then: seatlook init ... --seams FILE",
         )

@@ -44,56 +44,58 @@ def cut_along(surface: DesignSurface, lines: Mapping[str, FloatArray]) -> Design
         a hole, one neighbour all round, or less than 1 cm2.
     """
     laid = laid_on(surface.vertices, surface.faces, lines, tolerance=LINE_TOLERANCE)
-    drawn = imprint(surface.vertices, surface.faces, laid)
-    label = _parts(drawn)
-    panel, names = _named(drawn, label, surface)
+    drawing = imprint(surface.vertices, surface.faces, laid)
+    label = _parts(drawing)
+    panel, names = _named(drawing, label, surface)
     cut = DesignSurface(
-        vertices=drawn.vertices,
-        faces=drawn.faces,
+        vertices=drawing.vertices,
+        faces=drawing.faces,
         panel=panel,
         panel_names=names,
-        seam_lines=MappingProxyType(drawn.edges),
+        seam_lines=MappingProxyType(drawing.edges),
     )
     sides(cut.patches())  # refuses panels with holes and islands
     return cut
 
 
-def _parts(drawn: Imprinted) -> IntArray:
+def _parts(drawing: Imprinted) -> IntArray:
     """Return the part (m,) of each face, refusing lines with one part on both sides."""
-    faces = drawn.faces
+    faces = drawing.faces
     half = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     order = np.lexsort(half.T)
     half, owner = half[order], np.repeat(np.arange(len(faces)), 3)[order]
-    met = np.flatnonzero((half[1:] == half[:-1]).all(axis=1))
-    pairs = np.column_stack([owner[met], owner[met + 1]])
-    names = [drawn.edges.get((a, b)) for a, b in half[met].tolist()]
-    joined = pairs[[name is None for name in names]]
-    graph = sp.coo_array((np.ones(len(joined)), joined.T), shape=(len(faces), len(faces)))
+    index = np.flatnonzero((half[1:] == half[:-1]).all(axis=1))
+    pairs = np.column_stack([owner[index], owner[index + 1]])
+    names = [drawing.edges.get((a, b)) for a, b in half[index].tolist()]
+    links = pairs[[name is None for name in names]]
+    graph = sp.coo_array((np.ones(len(links)), links.T), shape=(len(faces), len(faces)))
     label = connected_components(graph, directed=False)[1]
     within = label[pairs[:, 0]] == label[pairs[:, 1]]
-    idle = {name for name, same in zip(names, within, strict=True) if same and name is not None}
-    if idle:
+    idle_lines = {
+        name for name, same in zip(names, within, strict=True) if same and name is not None
+    }
+    if idle_lines:
         raise InputError(
             Problem(
                 key=f"curve.{name}.points_mm",
                 got="the same panel on both sides",
-                expected="a line that parts two panels from end to end",
+                expected="a line that separates two panels from end to end",
             )
-            for name in sorted(idle)
+            for name in sorted(idle_lines)
         )
     return np.asarray(label, dtype=np.int64)
 
 
 def _named(
-    drawn: Imprinted, label: IntArray, surface: DesignSurface
+    drawing: Imprinted, label: IntArray, surface: DesignSurface
 ) -> tuple[IntArray, tuple[str, ...]]:
     """Return the panel of each face and the panels' names, those of one name front to rear."""
-    area = mesh.face_areas(drawn.vertices, drawn.faces)
+    area = mesh.face_areas(drawing.vertices, drawing.faces)
     whole = np.bincount(label, area)
-    middle = drawn.vertices[drawn.faces].mean(axis=1)
+    middle = drawing.vertices[drawing.faces].mean(axis=1)
     x, y, _ = (np.round(np.bincount(label, area * m) / whole, 3) for m in middle.T)
     before = np.zeros((len(whole), len(surface.panel_names)))
-    np.add.at(before, (label, surface.panel[drawn.source]), area)
+    np.add.at(before, (label, surface.panel[drawing.source]), area)
     base = before.argmax(axis=1)
     order = np.lexsort([x, y, base])
     names: list[str] = []

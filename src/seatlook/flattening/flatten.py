@@ -135,19 +135,19 @@ def flatten(
 
     _check("fabrics", dict.fromkeys(fabrics, 0.0), surface.panel_names)
 
-    alone = {p.name: _alone(p, fabrics.get(p.name)) for p in patches}
-    ratio = agreed_ratios(patches, borders, alone, limit=seam_strain)
+    shapes = {p.name: _alone(p, fabrics.get(p.name)) for p in patches}
+    ratio = agreed_ratios(patches, borders, shapes, limit=seam_strain)
     flat = {}
     for patch in patches:
         own = [s for s in borders if s.panel == patch.name and s.neighbour != FREE]
         fabric = fabrics.get(patch.name)
-        x = relaxed(patch, own, ratio, alone[patch.name], ease, fabric=fabric)
+        x = relaxed(patch, own, ratio, shapes[patch.name], ease, fabric=fabric)
         # A panel of a fabric has kept the direction in which its grain was laid.
         x = (_grain_up(patch, x) if fabric is None else x) * (1 - tension)
         flat[patch.name] = x * [1 - short.get(patch.name, 0.0), 1.0]
-    found = _report(surface, patches, borders, _side_by_side(flat), allowance, fabrics)
-    _check_seams(found, spoiled={*ease, *short})
-    return found
+    flattened = _report(surface, patches, borders, _side_by_side(flat), allowance, fabrics)
+    _check_seams(flattened, spoiled={*ease, *short})
+    return flattened
 
 
 def _alone(patch: Patch, fabric: Fabric | None) -> FloatArray:
@@ -171,12 +171,12 @@ def _report(
     by_grain = np.empty((len(surface.faces), 3))
     panels = []
     for i, patch in enumerate(patches):
-        mine, form = surface.panel == i, (patch.vertices, patch.faces, flat[patch.name])
-        strain[mine] = stretches(*form) - 1
-        by_grain[mine] = strains_by_grain(*form)
+        rows, form = surface.panel == i, (patch.vertices, patch.faces, flat[patch.name])
+        strain[rows] = stretches(*form) - 1
+        by_grain[rows] = strains_by_grain(*form)
         fabric = fabrics.get(patch.name)
-        stored = None if fabric is None else fabric_energy(by_grain[mine], fabric)
-        panels.append(_panel_strain(patch, strain[mine], stored))
+        stored = None if fabric is None else fabric_energy(by_grain[rows], fabric)
+        panels.append(_panel_strain(patch, strain[rows], stored))
     pattern = sewing_pattern(patches, borders, flat, allowance, seam_lines=surface.seam_lines)
     design = {s.name: float(mesh.arc_length(surface.vertices[s.vertices])[-1]) for s in borders}
     return Flattened(
@@ -212,34 +212,34 @@ def _panel_strain(patch: Patch, strain: FloatArray, stored: FloatArray | None) -
     )
 
 
-def _check_seams(found: Flattened, *, spoiled: set[str]) -> None:
-    """Refuse lines of a seam that are not equally long though nobody asked for it."""
-    for seam, sewn in zip(found.seams, found.pattern.seams, strict=True):
-        edges = {sewn.a, *sewn.b}
-        if spoiled & (edges | {found.pattern.edges[name].panel for name in edges}):
+def _check_seams(flattened: Flattened, *, spoiled: set[str]) -> None:
+    """Refuse lines of a seam that differ in length though neither is eased or short."""
+    for line, seam in zip(flattened.seams, flattened.pattern.seams, strict=True):
+        edges = {seam.a, *seam.b}
+        if spoiled & (edges | {flattened.pattern.edges[name].panel for name in edges}):
             continue
-        if abs(seam.difference) > SEAM_TOLERANCE:
+        if abs(line.difference) > SEAM_TOLERANCE:
             raise SeatlookError(
-                f"seam {seam.seam}: its lines are {1e3 * seam.a:.3f} and {1e3 * seam.b:.3f} mm "
+                f"seam {line.seam}: its lines are {1e3 * line.a:.3f} and {1e3 * line.b:.3f} mm "
                 f"long, more than {1e3 * SEAM_TOLERANCE:g} mm apart"
             )
 
 
-def _check(key: str, wanted: Mapping[str, float], known: Sequence[str]) -> None:
+def _check(key: str, fractions: Mapping[str, float], names: Sequence[str]) -> None:
     """Refuse names that do not exist and fractions that no pattern maker would use."""
     problems = [
         Problem(
             key=key,
             got=repr(name),
-            expected=f"one of {', '.join(known)}",
-            hint=did_you_mean(name, known),
+            expected=f"one of {', '.join(names)}",
+            hint=did_you_mean(name, names),
         )
-        for name in wanted
-        if name not in known
+        for name in fractions
+        if name not in names
     ]
     problems += [
         Problem(key=f"{key} {name}".strip(), got=f"{value:g}", expected="-0.2 to 0.2")
-        for name, value in wanted.items()
+        for name, value in fractions.items()
         if not abs(value) <= 0.2
     ]
     if problems:

@@ -24,23 +24,23 @@ _EASE_ROUNDS = 12
 def agreed_ratios(
     patches: tuple[Patch, ...],
     borders: tuple[Side, ...],
-    alone: Mapping[str, FloatArray],
+    shapes: Mapping[str, FloatArray],
     *,
     limit: float,
 ) -> dict[str, FloatArray]:
     """Return per side and segment its flat length over that on the surface, agreed by both."""
     by_name = {patch.name: patch for patch in patches}
-    wish = {}
+    wishes = {}
     for side in borders:
         patch = by_name[side.panel]
         at = side.indices(patch)
-        wish[side.name] = segment_lengths(alone[side.panel][at]) / segment_lengths(
+        wishes[side.name] = segment_lengths(shapes[side.panel][at]) / segment_lengths(
             patch.vertices[at]
         )
     agreed: dict[str, FloatArray] = {}
     for seam in pair(borders):
         b = seam.b[0]
-        mean = np.clip((wish[seam.a] + wish[b][::-1]) / 2, 1 - limit, 1 + limit)
+        mean = np.clip((wishes[seam.a] + wishes[b][::-1]) / 2, 1 - limit, 1 + limit)
         agreed |= {seam.a: mean, b: mean[::-1]}
     return agreed
 
@@ -49,7 +49,7 @@ def relaxed(
     patch: Patch,
     own: Sequence[Side],
     ratio: Mapping[str, FloatArray],
-    alone: FloatArray,
+    start: FloatArray,
     ease: Mapping[str, float],
     *,
     fabric: Fabric | None = None,
@@ -60,25 +60,25 @@ def relaxed(
     """
     eased = [side for side in own if side.name in ease]
     held = _held(patch, [side for side in own if side.name not in ease], ratio)
-    x = flatten_patch(patch.vertices, patch.faces, held, start=alone, fabric=fabric)
+    x = flatten_patch(patch.vertices, patch.faces, held, start=start, fabric=fabric)
     if not eased:
         return x
     agreed = np.array(
         [segment_lengths(patch.vertices[s.indices(patch)]) @ ratio[s.name] for s in eased]
     )
-    wanted = agreed * [1 + ease[s.name] for s in eased]
+    goal = agreed * [1 + ease[s.name] for s in eased]
     amount, slope = np.zeros(len(eased)), agreed
-    found = _lengths(patch, x, eased)
+    lengths = _lengths(patch, x, eased)
     for _ in range(_EASE_ROUNDS):
-        if np.abs(found - wanted).max() < _EASE_PRECISION:
+        if np.abs(lengths - goal).max() < _EASE_PRECISION:
             return x
-        step = (wanted - found) / slope
+        step = (goal - lengths) / slope
         amount = amount + step
         growth = _growth(patch, eased, amount)
         x = flatten_patch(patch.vertices, patch.faces, held, growth=growth, start=x, fabric=fabric)
-        before, found = found, _lengths(patch, x, eased)
-        slope = np.where(step == 0, slope, (found - before) / np.where(step == 0, 1.0, step))
-    raise SeatlookError(f"panel {patch.name} does not take on the ease of its sewing lines")
+        before, lengths = lengths, _lengths(patch, x, eased)
+        slope = np.where(step == 0, slope, (lengths - before) / np.where(step == 0, 1.0, step))
+    raise SeatlookError(f"panel {patch.name} cannot be stretched to the ease of its sewing lines")
 
 
 def _held(patch: Patch, own: Sequence[Side], ratio: Mapping[str, FloatArray]) -> HeldEdges:

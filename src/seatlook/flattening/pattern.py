@@ -43,7 +43,9 @@ def cut_outline(outline: FloatArray, allowance: float) -> FloatArray:
     grown = shapely.Polygon(outline).buffer(allowance, join_style="mitre", mitre_limit=2.0)
     if grown.geom_type != "Polygon" or len(grown.interiors):
         raise InputError.single(
-            "allowance", got=f"{1e3 * allowance:g} mm", expected="a cutting line that stays open"
+            "allowance",
+            got=f"{1e3 * allowance:g} mm",
+            expected="a cutting line that does not meet itself",
         )
     ring = shapely.get_coordinates(shapely.geometry.polygon.orient(grown).exterior)
     return np.ascontiguousarray(ring[:-1])

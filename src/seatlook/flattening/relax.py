@@ -101,11 +101,11 @@ def conformal_map(vertices: FloatArray, faces: IntArray) -> FloatArray:
     pinned = np.array([first, second, n + first, n + second])
     value = np.array([0.0, np.linalg.norm(vertices[second] - vertices[first]), 0.0, 0.0])
     free = np.setdiff1d(np.arange(2 * n), pinned)
-    known = rows[:, pinned] @ value
+    pinned_part = rows[:, pinned] @ value
     matrix = rows[:, free]
     flat = np.empty(2 * n)
     flat[pinned] = value
-    flat[free] = splu((matrix.T @ matrix).tocsc()).solve(-(matrix.T @ known))
+    flat[free] = splu((matrix.T @ matrix).tocsc()).solve(-(matrix.T @ pinned_part))
     x = flat.reshape(2, n).T
     ratio = face_areas(vertices, faces).sum() / face_areas(x, faces).sum()
     return np.ascontiguousarray(x * np.sqrt(ratio))
@@ -208,7 +208,7 @@ class _Energy:
         return 0.5 * float(r @ r), r, by_axis[:, order]
 
     def _turned(self, x: FloatArray) -> tuple[FloatArray, list[sp.csr_array]]:
-        """By how much the chord has left its direction; the grain would turn with it."""
+        """How far the chord has turned; the grain would turn with it."""
         chord, shape = self.chord, (1, len(x))
         weight = np.sqrt(_HOLD * self.area.sum()) / chord.length
         signs = weight * np.array([-1.0, 1.0])

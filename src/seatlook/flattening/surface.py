@@ -132,13 +132,13 @@ def _sides_of(patch: Patch, owner: dict[tuple[int, int], str]) -> list[Side]:
         raise InputError.single(
             f"panel {patch.name}", got="one neighbour all round", expected="at least two edges"
         )
-    found: list[Side] = []
+    result: list[Side] = []
     for k, start in enumerate(starts):
         count = (starts[(k + 1) % len(starts)] - start) % b
-        again = sum(side.neighbour == across[start] for side in found)
+        again = sum(side.neighbour == across[start] for side in result)
         suffix = f"_{again + 1}" if again else ""
         at = [(start + i) % b for i in range(count + 1)]
-        found.append(
+        result.append(
             Side(
                 name=f"{patch.name}.{across[start]}{suffix}",
                 panel=patch.name,
@@ -148,4 +148,4 @@ def _sides_of(patch: Patch, owner: dict[tuple[int, int], str]) -> list[Side]:
                 vertices=np.array(ring, dtype=np.int64)[at],
             )
         )
-    return found
+    return result

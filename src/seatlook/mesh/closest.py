@@ -52,27 +52,27 @@ def closest_places(
     middle = corner.mean(axis=1)
     radius = float(np.linalg.norm(corner - middle[:, None], axis=2).max())
     tree = KDTree(middle)
-    found = Closest(
+    closest = Closest(
         np.full(len(points), -1), np.zeros((len(points), 3)), np.full((len(points), 3), np.inf)
     )
-    left = np.flatnonzero(tree.query(points, distance_upper_bound=reach + radius)[0] < np.inf)
+    pending = np.flatnonzero(tree.query(points, distance_upper_bound=reach + radius)[0] < np.inf)
     count = min(_FIRST, len(faces))
-    while len(left):
-        found_far, found_faces = tree.query(points[left], k=np.arange(1, count + 1))
-        far, tried = np.asarray(found_far), np.asarray(found_faces, dtype=np.int64)
-        weights = _weights(points[left][:, None], corner[tried])
-        offset = points[left][:, None] - np.einsum("kfc,kfcd->kfd", weights, corner[tried])
+    while len(pending):
+        query_far, query_faces = tree.query(points[pending], k=np.arange(1, count + 1))
+        far, candidates = np.asarray(query_far), np.asarray(query_faces, dtype=np.int64)
+        weights = _weights(points[pending][:, None], corner[candidates])
+        offset = points[pending][:, None] - np.einsum("kfc,kfcd->kfd", weights, corner[candidates])
         best = np.linalg.norm(offset, axis=2).argmin(axis=1)
-        row = np.arange(len(left))
-        found.face[left] = tried[row, best]
-        found.weights[left], found.offset[left] = weights[row, best], offset[row, best]
-        proven = found.distance[left] <= far[:, -1] - radius
+        row = np.arange(len(pending))
+        closest.face[pending] = candidates[row, best]
+        closest.weights[pending], closest.offset[pending] = weights[row, best], offset[row, best]
+        certain = closest.distance[pending] <= far[:, -1] - radius
         if count == len(faces):
             break
-        left, count = left[~proven], min(4 * count, len(faces))
-    out = found.distance > reach
-    found.face[out], found.weights[out], found.offset[out] = -1, 0.0, np.inf
-    return found
+        pending, count = pending[~certain], min(4 * count, len(faces))
+    out = closest.distance > reach
+    closest.face[out], closest.weights[out], closest.offset[out] = -1, 0.0, np.inf
+    return closest
 
 
 def pseudonormals(
@@ -131,8 +131,8 @@ def border_segments(faces: IntArray, label: IntArray) -> tuple[IntArray, IntArra
     owner = np.repeat(label, 3)
     order = np.lexsort(pairs.T)
     pairs, owner = pairs[order], owner[order]
-    met = np.flatnonzero((pairs[1:] == pairs[:-1]).all(axis=1) & (owner[1:] != owner[:-1]))
-    return pairs[met], np.sort(np.column_stack([owner[met], owner[met + 1]]), axis=1)
+    index = np.flatnonzero((pairs[1:] == pairs[:-1]).all(axis=1) & (owner[1:] != owner[:-1]))
+    return pairs[index], np.sort(np.column_stack([owner[index], owner[index + 1]]), axis=1)
 
 
 def _weights(p: FloatArray, corner: FloatArray) -> FloatArray:

@@ -57,22 +57,22 @@ def imprint(vertices: FloatArray, faces: IntArray, lines: Mapping[str, FloatArra
     InputError
         A line leaves the surface between two of its points, or the surface folds back there.
     """
-    drawn = _Drawing(vertices, faces)
+    drawing = _Drawing(vertices, faces)
     problems: list[Problem] = []
     for name, line in lines.items():
         on = closest_places(line, vertices, faces, reach=np.inf)
         try:
-            drawn.draw(name, line - on.offset, on.face)
+            drawing.draw(name, line - on.offset, on.face)
         except InputError as error:
             problems += error.problems
     if problems:
         raise InputError(problems)
-    kept = sorted(drawn.faces)
+    numbers = sorted(drawing.faces)
     return Imprinted(
-        vertices=np.array(drawn.points),
-        faces=np.array([drawn.faces[f] for f in kept], dtype=np.int64),
-        source=np.array([drawn.source[f] for f in kept], dtype=np.int64),
-        edges=drawn.edges,
+        vertices=np.array(drawing.points),
+        faces=np.array([drawing.faces[f] for f in numbers], dtype=np.int64),
+        source=np.array([drawing.source[f] for f in numbers], dtype=np.int64),
+        edges=drawing.edges,
     )
 
 
@@ -80,36 +80,36 @@ class _Drawing:
     """A mesh whose faces are replaced by their parts, one after the other."""
 
     def __init__(self, vertices: FloatArray, faces: IntArray) -> None:
-        self.given = faces.tolist()
+        self.first_faces = faces.tolist()
         self.points = list(np.array(vertices))
-        self.faces: dict[int, list[int]] = dict(enumerate(self.given))
+        self.faces: dict[int, list[int]] = dict(enumerate(self.first_faces))
         self.source = {f: f for f in self.faces}
         self.parts = {f: {f} for f in self.faces}
-        self.around: list[set[int]] = [set() for _ in self.points]
+        self.faces_at: list[set[int]] = [set() for _ in self.points]
         for f, corners in self.faces.items():
             for a in corners:
-                self.around[a].add(f)
-        self.given_around = [tuple(found) for found in self.around]
+                self.faces_at[a].add(f)
+        self.first_faces_at = [tuple(numbers) for numbers in self.faces_at]
         side, k = np.divmod(boundary_sides(faces), 3)
-        self.held = {*faces[side, k].tolist(), *faces[side, (k + 1) % 3].tolist()}
+        self.fixed = {*faces[side, k].tolist(), *faces[side, (k + 1) % 3].tolist()}
         self.edges: dict[Edge, str] = {}
         self.count = len(self.faces)
 
     def draw(self, name: str, line: FloatArray, source: IntArray) -> None:
         """Draw a line through places of given faces."""
-        here = self._insert(line[0], int(source[0]))
+        vertex = self._insert(line[0], int(source[0]))
         for i in range(1, len(line)):
-            there = self._insert(line[i], int(source[i]))
-            if there != here:
-                path = self._path(here, there, f"curve.{name}.points_mm")
+            following = self._insert(line[i], int(source[i]))
+            if following != vertex:
+                path = self._path(vertex, following, f"curve.{name}.points_mm")
                 for a, b in pairwise(path):
                     self.edges.setdefault(_edge(a, b), name)
-                self.held.update(path)
-            here = there
+                self.fixed.update(path)
+            vertex = following
 
     def _insert(self, place: FloatArray, source: int) -> int:
         """Return the vertex at a place of a given face, a new one where there is none."""
-        near = {g for a in self.given[source] for g in self.given_around[a]}
+        near = {g for a in self.first_faces[source] for g in self.first_faces_at[a]}
         faces = sorted(part for g in near for part in self.parts[g])
         corner = np.array([[self.points[a] for a in self.faces[f]] for f in faces]).reshape(-1, 3)
         at = closest_places(
@@ -124,13 +124,13 @@ class _Drawing:
             vertex = self._split(self._between(a, b), (a, b), place)
         else:
             vertex = self._split({face}, (a, b, c), place)
-        self.held.add(vertex)
+        self.fixed.add(vertex)
         return vertex
 
     def _path(self, start: int, end: int, key: str) -> list[int]:
         """Return the vertices of a way from one vertex to another, along edges made for it."""
         path, normal = [start], self._normal(start) + self._normal(end)
-        while not self.around[path[-1]] & self.around[end]:
+        while not self.faces_at[path[-1]] & self.faces_at[end]:
             step = self._step(path[-1], end, normal)
             if step is None:
                 x, y, z = 1e3 * self.points[path[-1]]
@@ -140,18 +140,18 @@ class _Drawing:
                     expected="a line that stays on the surface",
                     hint="where the surface is strongly bent, points closer together help",
                 )
-            self.held.add(step)
+            self.fixed.add(step)
             path.append(step)
         return [*path, end]
 
-    def _step(self, here: int, end: int, normal: FloatArray) -> int | None:
+    def _step(self, vertex: int, end: int, normal: FloatArray) -> int | None:
         """Return the next vertex on the way to ``end``, or None where there is no way forward."""
-        at = self.points[here]
+        at = self.points[vertex]
         ahead = self.points[end] - at
         across = np.cross(normal, ahead)
         best, gain = None, 0.0
-        for f in self.around[here]:
-            b, c = (a for a in self.faces[f] if a != here)
+        for f in self.faces_at[vertex]:
+            b, c = (a for a in self.faces[f] if a != vertex)
             height_b, height_c = ((self.points[a] - at) @ across for a in (b, c))
             if height_b == height_c or height_b * height_c > 0:
                 continue
@@ -172,18 +172,18 @@ class _Drawing:
         """Put a vertex onto the edge (2 ends) or into the face (3) of these faces."""
         vertex = len(self.points)
         self.points.append(place)
-        self.around.append(set())
+        self.faces_at.append(set())
         for f in tuple(faces):
             corners, source = self.faces.pop(f), self.source.pop(f)
             self.parts[source].discard(f)
             for a in corners:
-                self.around[a].discard(f)
+                self.faces_at[a].discard(f)
             for end in ends:
                 part = [vertex if a == end else a for a in corners]
                 self.faces[self.count], self.source[self.count] = part, source
                 self.parts[source].add(self.count)
                 for a in part:
-                    self.around[a].add(self.count)
+                    self.faces_at[a].add(self.count)
                 self.count += 1
         name = self.edges.pop(_edge(*ends), None) if len(ends) == 2 else None
         if name is not None:
@@ -194,7 +194,7 @@ class _Drawing:
         """Whether a vertex lies at a place, moved there if it may be."""
         if off > CLEAR:
             return False
-        if vertex not in self.held and self._stays(self.around[vertex], vertex, place):
+        if vertex not in self.fixed and self._stays(self.faces_at[vertex], vertex, place):
             self.points[vertex] = place
             return True
         return off <= SAME
@@ -220,7 +220,7 @@ class _Drawing:
         return True
 
     def _between(self, a: int, b: int) -> set[int]:
-        return self.around[a] & self.around[b]
+        return self.faces_at[a] & self.faces_at[b]
 
     def _vector(self, face: int) -> FloatArray:
         a, b, c = (self.points[v] for v in self.faces[face])
@@ -228,7 +228,7 @@ class _Drawing:
 
     def _normal(self, vertex: int) -> FloatArray:
         """Return the unit normal at a vertex, faces weighted by their area."""
-        normal = np.sum([self._vector(f) for f in self.around[vertex]], axis=0)
+        normal = np.sum([self._vector(f) for f in self.faces_at[vertex]], axis=0)
         return np.asarray(normal / np.linalg.norm(normal))
 
 

@@ -51,12 +51,12 @@ def intersecting_pairs(
     pairs, flat = pairs[chosen], flat[chosen]
     first, second = first[chosen], second[chosen]
     same = _Joined(joined, len(points)).corners(faces[pairs[:, 0]], faces[pairs[:, 1]])
-    mine, yours = np.asarray(same.any(axis=2)), np.asarray(same.any(axis=1))
-    hit = _crossed(first, second, above[chosen], mine)
-    hit |= _crossed(second, first, below[chosen], yours)
-    alone = np.flatnonzero(flat & ~same.any(axis=(1, 2)))
-    hit[alone] = _overlap(first[alone], second[alone])
-    return np.asarray(pairs[hit])
+    first_shared, second_shared = np.asarray(same.any(axis=2)), np.asarray(same.any(axis=1))
+    crossing = _crossed(first, second, above[chosen], first_shared)
+    crossing |= _crossed(second, first, below[chosen], second_shared)
+    coplanar = np.flatnonzero(flat & ~same.any(axis=(1, 2)))
+    crossing[coplanar] = _overlap(first[coplanar], second[coplanar])
+    return np.asarray(pairs[crossing])
 
 
 def _near(corners: FloatArray) -> IntArray:
@@ -88,24 +88,24 @@ def _straddles(height: FloatArray) -> BoolArray:
 
 
 def _crossed(
-    triangle: FloatArray, other: FloatArray, height: FloatArray, met: BoolArray
+    triangle: FloatArray, other: FloatArray, height: FloatArray, shared: BoolArray
 ) -> BoolArray:
     """Whether an edge of ``triangle`` goes through the inside of ``other``, (k,).
 
-    ``height`` (k, 3) of the triangle's corners above the other's plane; ``met`` (k, 3) for those
+    ``height`` (k, 3) of the triangle's corners above the other's plane; ``shared`` (k, 3) for those
     that are corners of both.
     """
-    hit = np.zeros(len(triangle), dtype=bool)
+    crossing = np.zeros(len(triangle), dtype=bool)
     for i, j in _SIDES:
-        k = np.flatnonzero((height[:, i] * height[:, j] < 0.0) & ~met[:, i] & ~met[:, j])
+        k = np.flatnonzero((height[:, i] * height[:, j] < 0.0) & ~shared[:, i] & ~shared[:, j])
         start, end, o = triangle[k, i], triangle[k, j], other[k]
         along, spoke = end - start, o - start[:, None]
         side = np.stack(
             [np.einsum("kd,kd->k", along, np.cross(spoke[:, a], spoke[:, b])) for a, b in _SIDES],
             axis=1,
         )
-        hit[k] |= (side > 0.0).all(axis=1) | (side < 0.0).all(axis=1)
-    return hit
+        crossing[k] |= (side > 0.0).all(axis=1) | (side < 0.0).all(axis=1)
+    return crossing
 
 
 def _overlap(first: FloatArray, second: FloatArray) -> BoolArray:

@@ -70,7 +70,7 @@ def _open_ends(
 
     Closed lines have no ends.
     """
-    still = []
+    open_ends = []
     for name, line in laid.items():
         if len(line) > 3 and np.linalg.norm(line[0] - line[-1]) <= 1e-6:
             line[-1] = line[0]
@@ -80,8 +80,8 @@ def _open_ends(
             if gap <= tolerance:
                 line[at] = place
             else:
-                still.append((name, at, gap))
-    return still
+                open_ends.append((name, at, gap))
+    return open_ends
 
 
 def _join(laid: dict[str, FloatArray], name: str, at: int, tolerance: float) -> float:
@@ -94,9 +94,9 @@ def _join(laid: dict[str, FloatArray], name: str, at: int, tolerance: float) -> 
     if gap.min() <= tolerance:
         laid[name][at] = tips[gap.argmin()]
         return float(gap.min())
-    found = {k: _nearest(end, np.stack([v[:-1], v[1:]], axis=1)) for k, v in others.items()}
-    other = min(found, key=lambda k: found[k][1])
-    place, distance, segment = found[other]
+    nearest = {k: _nearest(end, np.stack([v[:-1], v[1:]], axis=1)) for k, v in others.items()}
+    other = min(nearest, key=lambda k: nearest[k][1])
+    place, distance, segment = nearest[other]
     if distance <= tolerance:
         laid[name][at] = place
         laid[other] = np.insert(laid[other], segment + 1, place, axis=0)

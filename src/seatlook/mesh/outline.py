@@ -235,14 +235,14 @@ def _repair(
     rows = np.arange(len(bad))
     ends = np.maximum(bad[rows, short], bad[rows, (short + 1) % 3])
     small = (radius < 0.75 * h) & (ends >= k)
-    kept = np.ones(len(points), dtype=bool)
-    kept[ends[small]] = False
+    keep = np.ones(len(points), dtype=bool)
+    keep[ends[small]] = False
     added = _circumcentres(p[~small])
     added = added[shapely.contains_xy(region, added)]
     if len(added):
-        distance, _ = cKDTree(points[kept]).query(added)
+        distance, _ = cKDTree(points[keep]).query(added)
         added = _thin(added[distance > 0.45 * h], 0.45 * h)
-    return np.concatenate([points[k:][kept[k:]], added])
+    return np.concatenate([points[k:][keep[k:]], added])
 
 
 def _circumcentres(p: FloatArray) -> FloatArray:
@@ -266,15 +266,15 @@ def _misses(points: FloatArray, faces: IntArray, segments: IntArray, k: int) -> 
                 expected="points spaced no wider than the gap to the line opposite",
             )
         ]
-    found = np.degrees(angles(points, faces)).min(axis=1)
-    worst, low = int(found.argmin()), float(np.quantile(found, 0.01))
+    angle = np.degrees(angles(points, faces)).min(axis=1)
+    worst, low = int(angle.argmin()), float(np.quantile(angle, 0.01))
     x, y = 1e3 * points[faces[worst]].mean(axis=0)
     problems = []
-    if found[worst] < MIN_ANGLE_DEG or low < QUANTILE_ANGLE_DEG:
+    if angle[worst] < MIN_ANGLE_DEG or low < QUANTILE_ANGLE_DEG:
         problems.append(
             Problem(
                 key="mesh angles",
-                got=f"{found[worst]:.1f} deg at ({x:.1f}, {y:.1f}) mm, 1 % quantile {low:.1f} deg",
+                got=f"{angle[worst]:.1f} deg at ({x:.1f}, {y:.1f}) mm, 1 % quantile {low:.1f} deg",
                 expected=f"at least {MIN_ANGLE_DEG:g} and {QUANTILE_ANGLE_DEG:g} deg",
                 hint="sharp corner, notch or uneven sampling of the outline",
             )

@@ -17,5 +17,5 @@ def quantile(values: FloatArray, weight: FloatArray, share: float) -> float:
     1.0
     """
     order = np.argsort(values, kind="stable")
-    reached = np.cumsum(weight[order]) / weight.sum()
-    return float(values[order][min(int(np.searchsorted(reached, share)), len(values) - 1)])
+    cumulative = np.cumsum(weight[order]) / weight.sum()
+    return float(values[order][min(int(np.searchsorted(cumulative, share)), len(values) - 1)])

@@ -31,10 +31,10 @@ def boundary_sides(faces: IntArray) -> IntArray:
     half = _half_edges(faces)
     key = half.min(axis=1) * (int(faces.max(initial=-1)) + 1) + half.max(axis=1)
     values, count = np.unique(key, return_counts=True)
-    alone = values[count == 1]
+    single = values[count == 1]
     # Searching among the few takes a third of the time of an inverse of all.
-    place = np.minimum(np.searchsorted(alone, key), max(len(alone) - 1, 0))
-    return np.flatnonzero(alone[place] == key) if len(alone) else np.zeros(0, dtype=np.int64)
+    place = np.minimum(np.searchsorted(single, key), max(len(single) - 1, 0))
+    return np.flatnonzero(single[place] == key) if len(single) else np.zeros(0, dtype=np.int64)
 
 
 def boundary_loops(faces: IntArray) -> list[IntArray]:
@@ -47,19 +47,19 @@ def boundary_loops(faces: IntArray) -> list[IntArray]:
     """
     half = _half_edges(faces)
     n = int(faces.max(initial=-1)) + 1
-    alone = half[~np.isin(half @ [n, 1], half @ [1, n])]
-    if len(np.unique(alone[:, 0])) != len(alone):
+    single = half[~np.isin(half @ [n, 1], half @ [1, n])]
+    if len(np.unique(single[:, 0])) != len(single):
         raise InputError.single(
             "faces", got="boundary curves that touch in a vertex", expected="a manifold surface"
         )
-    following = dict(alone.tolist())
+    following = dict(single.tolist())
     loops = []
     while following:
-        start, here = following.popitem()
+        start, vertex = following.popitem()
         loop = [start]
-        while here != start:
-            loop.append(here)
-            here = following.pop(here)
+        while vertex != start:
+            loop.append(vertex)
+            vertex = following.pop(vertex)
         first = loop.index(min(loop))
         loops.append(np.array(loop[first:] + loop[:first], dtype=np.int64))
     return sorted(loops, key=lambda loop: int(loop[0]))

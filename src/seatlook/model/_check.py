@@ -57,12 +57,12 @@ def _key(owner: object, name: str) -> str:
 
 def _array(owner: object, name: str, dtype: Any, shape: tuple[int | None, ...]) -> None:
     value = np.array(getattr(owner, name), dtype=dtype, order="C")
-    wanted = tuple("n" if n is None else n for n in shape)
+    expected = tuple("n" if n is None else n for n in shape)
     if value.ndim != len(shape) or any(
         n is not None and n != m for n, m in zip(shape, value.shape, strict=True)
     ):
         raise InputError.single(
-            _key(owner, name), got=f"shape {value.shape}", expected=f"shape {wanted}"
+            _key(owner, name), got=f"shape {value.shape}", expected=f"shape {expected}"
         )
     value.setflags(write=False)
     object.__setattr__(owner, name, value)

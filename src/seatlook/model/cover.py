@@ -193,7 +193,7 @@ def stage_units(stages: Sequence[Stage]) -> list[str]:
     names = [stage.name for stage in stages]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise InputError.single("stage", got=f"{twice[0]!r} twice", expected="names of their own")
+        raise InputError.single("stage", got=f"{twice[0]!r} twice", expected="different names")
     units = [unit for unit, _ in groupby(order, key=lambda stage: stage.unit)]
     torn = [unit for unit in units if units.count(unit) > 1]
     if torn:

@@ -129,7 +129,7 @@ class Fabric:
 
 
 def _check_unloading(name: str, loading: Curve, unloading: Curve | None) -> None:
-    """Refuse a way back that is softer than the way out: it would give more than was put in."""
+    """Refuse an unloading curve below the loading curve: it would return more than was stored."""
     if unloading is None:
         return
     knots = np.union1d(loading.strain, unloading.strain)
@@ -146,7 +146,7 @@ def _check_unloading(name: str, loading: Curve, unloading: Curve | None) -> None
             f"Fabric.{name}_unloading",
             got=f"{back[worst]:.4g} N/m at strain {strain[worst]:.4g}",
             expected=f"at least the {out[worst]:.4g} N/m of {name}",
-            hint="strain counts from where the tension is gone, so the way back is the steeper one",
+            hint="its strain counts from zero tension, so it is the steeper curve",
         )
     if lead[-1] < 0.0:
         raise InputError.single(
@@ -166,7 +166,7 @@ class Appearance:
     metalness : float in [0, 1]
     roughness : float in [0.08, 1]        alpha = roughness squared
     f0 : float in [0, 0.2]                reflectance of the dielectric part facing
-    sheen : (3,) float64 in [0, 1]        colour of the nap's lobe
+    sheen : (3,) float64 in [0, 1]        colour of the sheen lobe
     sheen_roughness : float in [0.4, 1]
     coat : float in [0, 1]                share covered by a clear finish
     coat_roughness : float in [0.08, 1]
@@ -210,7 +210,7 @@ class Appearance:
         if layered and self.maps is not None and self.maps.metalness is not None:
             raise InputError.single(
                 "Appearance.maps",
-                got="a metalness map below a coat or a nap",
+                got="a metalness map below a coat or a sheen",
                 expected="one of them: metal has neither",
             )
 
@@ -223,7 +223,7 @@ class Material:
     ----------
     c_threshold : float [1/m]   curvature at which a wrinkle counts; None takes the scene's
     first_wrinkle_radius : float [m]   radius to which the material is bent, visible side inwards,
-        when its first wrinkle shows (half pipe, as in VDA 230-205); another way to say c_threshold
+        when its first wrinkle shows (half pipe, as in VDA 230-205); another way to give c_threshold
     source : key -> where the number comes from, or "judgement"
     """
 

@@ -16,7 +16,7 @@ NotchKind = Literal["point", "v", "t", "castle", "u", "check"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Notch:
-    """A mark on the outline that tells where two panels meet.
+    """A mark on the outline where two panels meet.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class Shells:
     part : (e,) int64            part number of each element, likewise
     part_names : part number -> title
     node_count : int             n
-    reference : (n, 3) float64 [m]   nodes before any load, None where the file does not tell
+    reference : (n, 3) float64 [m]   nodes before any load, None where the file has none
     """
 
     corners: IntArray
@@ -97,7 +97,7 @@ class ShellState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShellResult:
-    """A file of shell states, each read when it is asked for.
+    """A file of shell states, each read when it is used.
 
     Parameters
     ----------

@@ -81,9 +81,9 @@ def column(values: Sequence[float | str | None]) -> tuple[str, ...]:
     >>> column([812.4, 40.25, None]), column([0.0949, 5.6e-5]), column(["none", 0.5])
     (('812', '40', '–'), ('0.0949', '0.0001'), ('none', '0.500'))
     """
-    known = [v for v in values if v is not None]
-    if all(isinstance(v, float) and math.isfinite(v) for v in known):
-        largest = max((abs(float(v)) for v in known), default=0.0)
+    numbers = [v for v in values if v is not None]
+    if all(isinstance(v, float) and math.isfinite(v) for v in numbers):
+        largest = max((abs(float(v)) for v in numbers), default=0.0)
         if 1e-3 <= largest < 1e6:
             digits = max(0, 2 - math.floor(math.log10(largest)))
             # Adding 0 turns a rounded -0 into 0.

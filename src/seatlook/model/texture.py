@@ -47,11 +47,11 @@ class TextureMaps:
             pixels, channels = np.array(getattr(self, name)), _CHANNELS[name]
             shape = pixels.shape[:2] if channels == 1 else (*pixels.shape[:2], channels)
             if pixels.dtype != np.uint8 or pixels.shape != shape or 0 in shape or len(shape) < 2:
-                wanted = "(h, w)" if channels == 1 else f"(h, w, {channels})"
+                expected = "(h, w)" if channels == 1 else f"(h, w, {channels})"
                 raise InputError.single(
                     f"TextureMaps.{name}",
                     got=f"{pixels.dtype} {pixels.shape}",
-                    expected=f"uint8 {wanted}",
+                    expected=f"uint8 {expected}",
                 )
             pixels.setflags(write=False)
             object.__setattr__(self, name, pixels)

@@ -42,34 +42,34 @@ def zones(
         *(f"{p.name} interior" for p in pattern.panels),
     ]
     index = {name: i for i, name in enumerate(names)}
-    sewn = {edge: seam.name for seam in pattern.seams for edge in (seam.a, *seam.b)}
+    seam_of = {edge: seam.name for seam in pattern.seams for edge in (seam.a, *seam.b)}
     zone = np.zeros(len(centroids), dtype=np.int64)
     for i, p in enumerate(pattern.panels):
-        mine = np.flatnonzero(panel == i)
-        points = centroids[mine]
-        chosen = np.full(len(mine), index[f"{p.name} interior"])
-        nearest = np.full(len(mine), BAND)
-        for edge in (e for e in pattern.edges.values() if e.panel == p.name and e.name in sewn):
+        rows = np.flatnonzero(panel == i)
+        points = centroids[rows]
+        chosen = np.full(len(rows), index[f"{p.name} interior"])
+        nearest = np.full(len(rows), BAND)
+        for edge in (e for e in pattern.edges.values() if e.panel == p.name and e.name in seam_of):
             distance = distance_to_polyline(points, pattern.edge_points(edge.name))
             closer = distance < nearest
-            chosen[closer] = index[f"seam {sewn[edge.name]}"]
+            chosen[closer] = index[f"seam {seam_of[edge.name]}"]
             nearest[closer] = distance[closer]
-        for line in _free_polylines(pattern, p.name, sewn):
+        for line in _free_polylines(pattern, p.name, seam_of):
             chosen[distance_to_polyline(points, line) < BAND] = index[FREE_EDGE]
         for box in (b for b in boxes if b.panel == p.name):
             inside = ((points >= box.low) & (points <= box.high)).all(axis=1)
             chosen[inside] = index[box.name]
-        zone[mine] = chosen
+        zone[rows] = chosen
     return zone, tuple(names)
 
 
-def _free_polylines(pattern: Pattern, panel: str, sewn: dict[str, str]) -> list[FloatArray]:
+def _free_polylines(pattern: Pattern, panel: str, seam_of: dict[str, str]) -> list[FloatArray]:
     """Stretches of the outline that no seam covers."""
     outline = pattern.panel(panel).outline
     n = len(outline)
     covered = np.zeros(n, dtype=bool)  # segment k runs from vertex k to k + 1
     for edge in pattern.edges.values():
-        if edge.panel == panel and edge.name in sewn:
+        if edge.panel == panel and edge.name in seam_of:
             count = (edge.end - edge.start) % n or n
             covered[(edge.start + np.arange(count)) % n] = True
     return [outline[[k, (k + 1) % n]] for k in np.flatnonzero(~covered)]

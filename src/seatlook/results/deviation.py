@@ -70,9 +70,11 @@ def seam_lines(solution: Solution, design: Design) -> tuple[SeamLine, ...]:
     rows = []
     for seam in cover.stitchings:
         near, far = (_panels(cover, side) for side in (seam.a.vertices, seam.b.vertices))
-        wanted = {tuple(sorted((number.get(a, -1), number.get(b, -1)))) for a in near for b in far}
-        mine = np.array([tuple(pair) in wanted for pair in labels.tolist()], dtype=bool)
-        rows.append(_seam_line(seam, solution.positions, design, pairs[mine]))
+        neighbours = {
+            tuple(sorted((number.get(a, -1), number.get(b, -1)))) for a in near for b in far
+        }
+        on_seam = np.array([tuple(pair) in neighbours for pair in labels.tolist()], dtype=bool)
+        rows.append(_seam_line(seam, solution.positions, design, pairs[on_seam]))
     return tuple(rows)
 
 

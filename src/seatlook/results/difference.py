@@ -50,30 +50,30 @@ def difference(
     InputError
         Values that do not belong to their covers.
     """
-    for cover, given in ((solution.cover, values), (other.cover, other_values)):
-        if given.shape != (len(cover.faces),):
+    for cover, array in ((solution.cover, values), (other.cover, other_values)):
+        if array.shape != (len(cover.faces),):
             raise InputError.single(
-                "values", got=f"shape {given.shape}", expected=f"({len(cover.faces)},)"
+                "values", got=f"shape {array.shape}", expected=f"({len(cover.faces)},)"
             )
-    mine, theirs = solution.cover, other.cover
-    if np.array_equal(mine.faces, theirs.faces) and mine.panel_names == theirs.panel_names:
+    first, second = solution.cover, other.cover
+    if np.array_equal(first.faces, second.faces) and first.panel_names == second.panel_names:
         return values - other_values
-    carried = recover(theirs.rest, theirs.faces, other_values)
-    smooth = recover(mine.rest, mine.faces, values)[mine.faces].mean(axis=1)
-    centre = mine.rest[mine.faces].mean(axis=1)
+    nodal = recover(second.rest, second.faces, other_values)
+    smooth = recover(first.rest, first.faces, values)[first.faces].mean(axis=1)
+    centre = first.rest[first.faces].mean(axis=1)
     out = np.full(len(values), np.nan)
-    for number, name in enumerate(mine.panel_names):
-        rows = np.flatnonzero(mine.panel == number)
-        if name not in theirs.panel_names or not len(rows):
+    for number, name in enumerate(first.panel_names):
+        rows = np.flatnonzero(first.panel == number)
+        if name not in second.panel_names or not len(rows):
             continue
-        used = np.unique(theirs.faces[theirs.panel == theirs.panel_names.index(name)])
+        used = np.unique(second.faces[second.panel == second.panel_names.index(name)])
         if not len(used):
             continue
-        shift = mine.rest[mine.faces[rows]].min(axis=(0, 1)) - theirs.rest[used].min(axis=0)
-        distance, found = KDTree(theirs.rest[used] + shift).query(centre[rows])
-        near = np.asarray(found)
-        there = distance < _APART * max(mine.element_size, theirs.element_size)
-        out[rows[there]] = smooth[rows[there]] - carried[used[near[there]]]
+        shift = first.rest[first.faces[rows]].min(axis=(0, 1)) - second.rest[used].min(axis=0)
+        distance, nearest = KDTree(second.rest[used] + shift).query(centre[rows])
+        index = np.asarray(nearest)
+        near = distance < _APART * max(first.element_size, second.element_size)
+        out[rows[near]] = smooth[rows[near]] - nodal[used[index[near]]]
     return out
 
 
@@ -81,11 +81,13 @@ def zone_differences(
     solution: Solution, values: FloatArray, other: Solution, other_values: FloatArray
 ) -> tuple[ZoneDifference, ...]:
     """Compare zones of the same name by their means: buckled patterns are not unique."""
-    mine, theirs = (_zone_means(*pair) for pair in ((solution, values), (other, other_values)))
+    means, other_means = (
+        _zone_means(*pair) for pair in ((solution, values), (other, other_values))
+    )
     return tuple(
-        ZoneDifference(zone=zone, mean=mine[zone], other=theirs[zone])
-        for zone in mine
-        if zone in theirs
+        ZoneDifference(zone=zone, mean=means[zone], other=other_means[zone])
+        for zone in means
+        if zone in other_means
     )
 
 

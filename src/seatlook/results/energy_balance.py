@@ -17,7 +17,7 @@ class EnergyBalance:
     placed : elastic energy of the panels where they begin, as their unevenness stores it
     stored : elastic energy of sheet and foam at the end, less ``placed``
     friction : taken up by the foam's friction
-    damping : by how much the time steps lower the potential, which an implicit step gives away
+    damping : loss of the potential in the time steps, which an implicit step does not store
     """
 
     ties: float

@@ -133,11 +133,11 @@ def _plane(shape: Cushion, h: float) -> _Plane:
     lines += list(wires.values())
     rim = np.concatenate([part[:-1] for part in _split(bottom, corners, h)])
     points, faces = mesh.triangulate(rim, h, lines=lines)
-    named = dict(zip((f"frame_{q}" for q in _QUARTERS), frames, strict=True))
+    frame_curves = dict(zip((f"frame_{q}" for q in _QUARTERS), frames, strict=True))
     return _Plane(
         points=points,
         faces=faces,
-        curves=wires | {name: line[::-1] for name, line in named.items()},
+        curves=wires | {name: line[::-1] for name, line in frame_curves.items()},
     )
 
 

@@ -264,7 +264,7 @@ def _report(
     if not state.residual <= tolerance:
         reasons.append(f"residual {state.residual:.2e} above {tolerance:.2e}")
     elif not state.stable:
-        reasons.append(f"unstable: {state.downhill} directions lead downhill")
+        reasons.append(f"unstable: negative stiffness in {state.downhill} directions")
     return SheetSolution(
         positions=state.x,
         sheet=sheet,

@@ -77,7 +77,7 @@ def solve(
     Solution
         ``status`` is "converged" when the largest out-of-balance force is below 1e-3 of the mean
         elastic nodal force, seams are closed to 0.1 mm, kinetic energy is below 1e-4 of the
-        elastic, and the foam stays within what its curve says; else ``reason`` says what is not.
+        elastic, and the foam stays within its curve; else ``reason`` says what is not.
 
     Raises
     ------
@@ -93,8 +93,8 @@ def solve(
     plan = schedule(cover.stages, settings.dt)
     ahead = plan if start is None else _after(plan, start, cover)
     if start is not None:
-        done = len(plan) - len(ahead)
-        process.resume(start, time=plan[done - 1].time if done else 0.0)
+        count = len(plan) - len(ahead)
+        process.resume(start, time=plan[count - 1].time if count else 0.0)
     run = _Run(process, plan, clock, progress)
     for i, step in enumerate(ahead):
         first = i == 0 or ahead[i - 1].stage != step.stage
@@ -107,8 +107,8 @@ def solve(
         last = i + 1 == len(ahead) or ahead[i + 1].stage != step.stage
         if last and snapshot is not None:
             snapshot(run.solution(step.stage, ["not yet brought to rest"]))
-    why = run.come_to_rest()
-    solution = run.solution(_REST, [*reasons(process, run.records[-1]), *why])
+    causes = run.come_to_rest()
+    solution = run.solution(_REST, [*reasons(process, run.records[-1]), *causes])
     if strict and solution.status != "converged":
         raise ConvergenceError(solution.reason, solution)
     return solution
@@ -140,31 +140,31 @@ class _Run:
             )
 
     def come_to_rest(self) -> list[str]:
-        """Come to rest; leave balances that are unstable, or say so."""
+        """Come to rest and leave unstable balances; return why it did not work."""
         self.process.begin(rest=True)
         kick = _KICK * float(self.process.cover.thickness.max())
         for push in (*[kick] * _KICKS, 0.0):
             if not self._rest() or not self.process.downhill(push):
                 return []
-        return ["unstable: a direction leads downhill"]
+        return ["unstable: negative stiffness in one direction"]
 
     def _rest(self) -> bool:
         """Repeat the static solve until all that lags agrees with the shape; whether it does."""
         process = self.process
-        record, spent, dt = process.record(), 0, _LONGER * process.dt
+        record, iterations, dt = process.record(), 0, _LONGER * process.dt
         for _ in range(_ROUNDS):
-            left = min(_REST_ITERATIONS, _MOST_ITERATIONS - spent)
-            record = process.approach_rest(dt, record, left)
+            limit = min(_REST_ITERATIONS, _MOST_ITERATIONS - iterations)
+            record = process.approach_rest(dt, record, limit)
             self.add(_REST, record)
-            spent += record.iterations
+            iterations += record.iterations
             dt *= 2.0
             if not unrest(process, record):
                 return True
-            if spent >= _MOST_ITERATIONS:
+            if iterations >= _MOST_ITERATIONS:
                 break
         return False
 
-    def solution(self, stage: str, why: list[str]) -> Solution:
+    def solution(self, stage: str, causes: list[str]) -> Solution:
         """The state as a Solution."""
         process = self.process
         top, mid, bottom = process.sheet.strains(process.x)
@@ -189,8 +189,8 @@ class _Run:
             friction_anchor=free if foundation is None else foundation.friction.anchor,
             strain_peak=process.sheet.membrane.peaks,
             stage=stage,
-            status="not converged" if why else "converged",
-            reason="; ".join(why),
+            status="not converged" if causes else "converged",
+            reason="; ".join(causes),
             history=MappingProxyType(columns | {"cpu_seconds": np.array(self.seconds)}),
             figures=MappingProxyType(figures(process, self.records) | {"cpu_seconds": seconds}),
             version=__version__,
@@ -201,11 +201,11 @@ def _after(plan: list[Step], start: Solution, cover: Cover) -> list[Step]:
     """Steps after the stage at whose end ``start`` was taken."""
     if start.stage == _REST:
         return []
-    done = [i for i, step in enumerate(plan) if step.stage == start.stage]
-    if not done:
+    numbers = [i for i, step in enumerate(plan) if step.stage == start.stage]
+    if not numbers:
         raise InputError.single(
             "start.stage",
             got=repr(start.stage),
             expected=f"one of {stage_units(cover.stages)}",
         )
-    return plan[done[-1] + 1 :]
+    return plan[numbers[-1] + 1 :]

@@ -210,7 +210,7 @@ def test_cover_remembers_over_a_restart():
         (
             Curve(strain=[0.0, 0.1], stiffness=[500.0, 3000.0]),
             r"Fabric.warp_unloading: got 15 N/m at strain 0.02, expected at least the 20 N/m of "
-            r"warp \(strain counts from where the tension is gone",
+            r"warp \(its strain counts from zero tension",
         ),
         (
             Curve(strain=[0.0, 0.1], stiffness=[9000.0, 900.0]),

@@ -8,8 +8,7 @@ import pytest
 from seatlook.assembly import assemble
 from seatlook.results.gap import gap
 from seatlook.solver import solve
-from seatlook.solver.foam import distance
-from seatlook.solver.foam import field_cache as kept_fields
+from seatlook.solver.foam import distance, field_cache
 from support import scenes
 from support.covers import sphere
 
@@ -96,20 +95,20 @@ def test_folder_that_refuses_costs_only_time(tmp_path, monkeypatch, built):
 
 def test_changed_code_does_not_find_what_it_made_before(folder, built, monkeypatch):
     again()
-    monkeypatch.setattr(kept_fields, "_code", lambda: "another")
+    monkeypatch.setattr(field_cache, "_code", lambda: "another")
     again()
     assert len(built) == 2
 
 
 def test_what_was_not_used_for_longest_is_forgotten(folder, monkeypatch):
-    monkeypatch.setattr(kept_fields, "_MOST", 2)
+    monkeypatch.setattr(field_cache, "_MAX_FILES", 2)
     for number, key in enumerate("abc"):
-        kept_fields.write(key, x=np.zeros(3))
+        field_cache.write(key, x=np.zeros(3))
         for path in folder.glob("*.field"):
             if path.stat().st_mtime > 1e6:
                 os.utime(path, (number, number))
         if key == "b":
-            kept_fields.read("a")
-    assert kept_fields.read("b") is None
-    assert kept_fields.read("a") is not None
-    assert kept_fields.read("c") is not None
+            field_cache.read("a")
+    assert field_cache.read("b") is None
+    assert field_cache.read("a") is not None
+    assert field_cache.read("c") is not None

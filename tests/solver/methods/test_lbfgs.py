@@ -59,7 +59,7 @@ def run(energy, x, factor, *, tolerance=1e-9, iterations=500, **options):
         Potential([energy]),
         x,
         factor,
-        done=lambda g: bool(seen.append(np.abs(g).max()) or seen[-1] < tolerance),
+        stop=lambda g: bool(seen.append(np.abs(g).max()) or seen[-1] < tolerance),
         iterations=iterations,
     )
     return descent, seen
@@ -104,7 +104,7 @@ def test_accepted_values_never_rise_and_no_vertex_passes_the_cap():
     energy, steps, values = Rosenbrock(), [], []
     x = np.tile([-1.2, 1.0, 0.3], (2, 1))
     Watched(x.shape, step_cap=0.1).minimise(
-        Potential([energy]), x, Factor(csc_array(identity(2))), done=lambda g: False, iterations=80
+        Potential([energy]), x, Factor(csc_array(identity(2))), stop=lambda g: False, iterations=80
     )
     assert max(steps) <= 0.1 * (1 + 1e-12)
     assert (np.diff(values) <= 0).all()

@@ -81,8 +81,8 @@ class Bending:
 def _jump_weights(edges: Edges, area: FloatArray) -> FloatArray:
     """Area (e,) [m2] that the jump of the curvature across every edge stands for, 0 at the rim."""
     # Near the rim two edges, or one, see all that the triangle misses.
-    seen = area / np.maximum((~edges.free)[edges.of_face].sum(axis=1), 1)
-    return np.where(edges.free, 0.0, JUMP * seen[edges.faces].sum(axis=1))
+    share = area / np.maximum((~edges.free)[edges.of_face].sum(axis=1), 1)
+    return np.where(edges.free, 0.0, JUMP * share[edges.faces].sum(axis=1))
 
 
 def _moments(
@@ -92,7 +92,7 @@ def _moments(
     moment = area[:, None, None] * (stiffness @ k)
     first, second = edges.faces[~edges.free].T
     between = 0.5 * jump[~edges.free, None, None] * (stiffness[first] + stiffness[second])
-    passed = between @ (k[first] - k[second])
-    np.add.at(moment, first, passed)
-    np.subtract.at(moment, second, passed)
+    exchange = between @ (k[first] - k[second])
+    np.add.at(moment, first, exchange)
+    np.subtract.at(moment, second, exchange)
     return np.asarray(moment)

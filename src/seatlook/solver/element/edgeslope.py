@@ -189,7 +189,7 @@ def _replaced(rows: Rows, which: IntArray, by: Rows) -> Rows:
     new = np.zeros(len(sizes), dtype=bool)
     new[which] = True
     nodes, weights = np.empty(start[-1], dtype=np.int64), np.empty(start[-1])
-    taken, kept = np.repeat(new, sizes), np.repeat(~new, np.diff(rows.start))
-    nodes[taken], weights[taken] = by.nodes, by.weights
-    nodes[~taken], weights[~taken] = rows.nodes[kept], rows.weights[kept]
+    target, source = np.repeat(new, sizes), np.repeat(~new, np.diff(rows.start))
+    nodes[target], weights[target] = by.nodes, by.weights
+    nodes[~target], weights[~target] = rows.nodes[source], rows.weights[source]
     return Rows(start, nodes, weights)

@@ -71,8 +71,8 @@ def rim_edges(edges: Edges, ends: IntArray, count: int) -> IntArray:
     """Number (k,) of the free edge between each pair of vertices (k, 2)."""
     key = edges.ends.min(axis=1) * count + edges.ends.max(axis=1)
     order = np.argsort(key)
-    wanted = ends.min(axis=1) * count + ends.max(axis=1)
-    found = order[np.minimum(np.searchsorted(key, wanted, sorter=order), len(order) - 1)]
-    if (key[found] != wanted).any() or not edges.free[found].all():
+    query = ends.min(axis=1) * count + ends.max(axis=1)
+    index = order[np.minimum(np.searchsorted(key, query, sorter=order), len(order) - 1)]
+    if (key[index] != query).any() or not edges.free[index].all():
         raise InputError.single("hem", got="edges inside a panel", expected="edges of the rim")
-    return np.asarray(found)
+    return np.asarray(index)

@@ -30,18 +30,18 @@ class Unloading:
     ) -> None:
         self._curves = fabric, *loading, *unloading_tables(fabrics)
         # Peak and set [1], loss [J/m2]; without a peak the first strain, slack or not, is new.
-        self._worn = np.zeros((len(fabric), 2, 3))
-        self._worn[:, :, 0] = -np.inf
+        self._history = np.zeros((len(fabric), 2, 3))
+        self._history[:, :, 0] = -np.inf
         self._lacking = np.zeros((len(fabric), 2, 3))
 
     @property
     def peaks(self) -> FloatArray:
         """Largest warp and weft strains so far, (m, 2) [1], -inf if never stretched."""
-        return self._worn[:, :, 0].copy()
+        return self._history[:, :, 0].copy()
 
     def wear(self, E: FloatArray) -> None:
         """Take strains (m, 2 or 3) into the history."""
-        kernels.wear(np.array(E, order="C"), *self._curves, self._worn)
+        kernels.wear(np.array(E, order="C"), *self._curves, self._history)
 
     def tensions(
         self, E: FloatArray, of_face: IntArray, natural: FloatArray, area: FloatArray,
@@ -60,5 +60,5 @@ class Unloading:
         kernels.soften(self._lack(E), natural, area, out)
 
     def _lack(self, E: FloatArray) -> FloatArray:
-        kernels.lack(E, *self._curves, self._worn, self._lacking)
+        kernels.lack(E, *self._curves, self._history, self._lacking)
         return self._lacking

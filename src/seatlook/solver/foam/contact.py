@@ -75,26 +75,26 @@ class FoamContact:
         n = len(area)
         self.force, self.depth, self.normal = np.zeros(n), np.zeros(n), np.zeros((n, 3))
         self._blocks, self._firm = np.zeros((n, 3, 3)), np.zeros((2, n))
-        # The same shape is asked about several times: value, forces, state.
-        self._seen, self._found = np.full((n, 3), np.nan), np.empty((n, 5))
+        # The same shape is measured several times: value, forces, state.
+        self._places, self._distances = np.full((n, 3), np.nan), np.empty((n, 5))
 
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N]."""
         pull = settled_part(gradient, len(self.area)) if len(x) > len(self.area) else self._firm[1]
-        settled = self._look(x)
+        settlement = self._measure(x)
         return float(
             kernel.contact_value(
-                self._found, self.half_thickness, settled, self.per_vertex, gradient, pull
+                self._distances, self.half_thickness, settlement, self.per_vertex, gradient, pull
             )
         )
 
     def update(self, x: FloatArray) -> None:
         """Refresh normal force, normal and depth of the springs at ``x``."""
-        settled = self._look(x)
+        settlement = self._measure(x)
         kernel.contact_state(
-            self._found,
+            self._distances,
             self.half_thickness,
-            settled,
+            settlement,
             self.per_vertex,
             self.force,
             self.normal,
@@ -113,12 +113,14 @@ class FoamContact:
         phi, normal = self.field.at(x)
         near = np.isfinite(phi)
         unit = normal[near] / np.linalg.norm(normal[near], axis=1, keepdims=True)
-        through = np.empty(len(unit))
+        depth = np.empty(len(unit))
         surface = x[near] - phi[near, None] * unit
-        kernel.thickness(self.field.coefficients, self.field.grid, surface, unit, through)
-        found = np.clip(through, self.field.grid[3], self.field.least_extent)
-        result = np.full(len(x), float(np.median(found)) if len(found) else self.field.least_extent)
-        result[near] = found
+        kernel.thickness(self.field.coefficients, self.field.grid, surface, unit, depth)
+        thickness = np.clip(depth, self.field.grid[3], self.field.least_extent)
+        result = np.full(
+            len(x), float(np.median(thickness)) if len(thickness) else self.field.least_extent
+        )
+        result[near] = thickness
         return result
 
     def stiffness(self) -> csc_array:
@@ -131,35 +133,35 @@ class FoamContact:
 
     def blocks(self, x: FloatArray, *, definite: bool = False) -> FloatArray:
         """Diagonal blocks (n, 3, 3) of the Hessian; overwritten by the next call."""
-        settled = self._look(x)
+        settlement = self._measure(x)
         kernel.contact_blocks(
             x,
             self.field.coefficients,
             self.field.grid,
-            self._found,
+            self._distances,
             self.half_thickness,
-            settled,
+            settlement,
             self.per_vertex,
             definite,
             self._blocks,
         )
         return self._blocks
 
-    def _look(self, x: FloatArray) -> FloatArray:
-        """Look the distances up at ``x``; return the settlements there."""
+    def _measure(self, x: FloatArray) -> FloatArray:
+        """Measure the distances at ``x``; return the settlements there."""
         n = len(self.area)
-        settled = settled_part(x, n) if len(x) > n else self._firm[0]
+        settlement = settled_part(x, n) if len(x) > n else self._firm[0]
         field = self.field
-        kernel.look(
+        kernel.measure(
             x,
             field.coefficients,
             field.grid,
             self.half_thickness,
-            settled,
-            self._seen,
-            self._found,
+            settlement,
+            self._places,
+            self._distances,
         )
-        return settled
+        return settlement
 
 
 def diagonal_blocks(blocks: FloatArray) -> csc_array:

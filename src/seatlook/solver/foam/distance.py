@@ -11,7 +11,7 @@ from scipy import ndimage
 
 from seatlook.errors import InputError
 from seatlook.model import FloatArray, IntArray
-from seatlook.solver.foam import field_cache as kept_fields
+from seatlook.solver.foam import field_cache
 from seatlook.solver.kernels import distance as kernel
 
 _BAND = 2.0  # cells around the surface whose distance is searched over all faces
@@ -43,7 +43,7 @@ class DistanceField:
         return phi, gradient
 
 
-_KEPT = 2  # fields of one evaluation: the foam, and what the finished shape is compared with
+_CACHE_SIZE = 2  # fields of one evaluation: the foam, and what the finished shape is compared with
 _fields: OrderedDict[str, DistanceField] = OrderedDict()
 
 
@@ -56,7 +56,7 @@ def distance_field(
     the winding number along vertical lines, then cubic B-spline interpolation, which is C2.
 
     Fields are kept under the content of their surfaces: the last two in memory, more of them on
-    disk (``kept_fields``), from where one of 1.1 million nodes is read in 20 ms.
+    disk (``field_cache``), from where one of 1.1 million nodes is read in 20 ms.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def distance_field(
     key = _digest(vertices, faces, spacing, margin)
     if key not in _fields:
         _fields[key] = _read(key) or _written(key, _built(vertices, faces, spacing, margin))
-        if len(_fields) > _KEPT:
+        if len(_fields) > _CACHE_SIZE:
             _fields.popitem(last=False)
     _fields.move_to_end(key)
     return _fields[key]
@@ -85,14 +85,14 @@ def _digest(vertices: FloatArray, faces: IntArray, spacing: float, margin: float
 
 
 def _read(key: str) -> DistanceField | None:
-    found = kept_fields.read(key)
-    if found is None:
+    arrays = field_cache.read(key)
+    if arrays is None:
         return None
-    return DistanceField(found["coefficients"], found["grid"], float(found["least_extent"]))
+    return DistanceField(arrays["coefficients"], arrays["grid"], float(arrays["least_extent"]))
 
 
 def _written(key: str, field: DistanceField) -> DistanceField:
-    kept_fields.write(
+    field_cache.write(
         key,
         coefficients=field.coefficients,
         grid=field.grid,

@@ -21,7 +21,7 @@ from seatlook.files import cache_folder, write_bytes
 from seatlook.model import FloatArray
 from seatlook.solver.kernels import distance as kernel
 
-_MOST = 32  # files, some 300 MB for foams of a seat's size; the one unused longest goes first
+_MAX_FILES = 32  # files, some 300 MB for foams of a seat's size; the one unused longest goes first
 _DIGEST = hashlib.sha256().digest_size
 
 
@@ -81,5 +81,5 @@ def _code() -> str:
 
 def _forget(base: Path) -> None:
     """Remove the files that were not used for longest."""
-    for path in sorted(base.glob("*.field"), key=lambda p: p.stat().st_mtime)[:-_MOST]:
+    for path in sorted(base.glob("*.field"), key=lambda p: p.stat().st_mtime)[:-_MAX_FILES]:
         path.unlink(missing_ok=True)

@@ -68,12 +68,12 @@ class Foundation:
 
     def figures(self, state: FloatArray) -> dict[str, float]:
         """Depths [m], pressures [Pa] and forces [N] at the last update."""
-        contact, settled = self.contact, settled_part(state, len(self.contact.area))
+        contact, settlement = self.contact, settled_part(state, len(self.contact.area))
         touching = contact.force > 0.0
-        depth = np.where(touching, contact.depth + settled, 0.0)
+        depth = np.where(touching, contact.depth + settlement, 0.0)
         return {
             "contact_depth_max": float(depth.max()),
-            "contact_settlement_max": float(settled.max()),
+            "contact_settlement_max": float(settlement.max()),
             "contact_pressure_max": float(contact.pressure().max()),
             "contact_column_pressure_max": float(self.settlement.pressure(state).max()),
             "contact_compression_max": float((depth / self.settlement.thickness).max()),

@@ -15,11 +15,11 @@ def quadratic(start, columns, values, x, gradient):
     carries what it loses (Kahan 1965): rows of a triangle do not cancel, so it wanders far from
     where it ends.
     """
-    total = lost = 0.0
+    total = carry = 0.0
     for i in range(len(start) - 1):
         x0, x1, x2 = x[i, 0], x[i, 1], x[i, 2]
         a = b = c = 0.0
-        row = -lost
+        row = -carry
         for j in range(start[i], start[i + 1]):
             v, k = columns[j], values[j]
             d0, d1, d2 = x[v, 0] - x0, x[v, 1] - x1, x[v, 2] - x2
@@ -35,7 +35,7 @@ def quadratic(start, columns, values, x, gradient):
         gradient[i, 1] += b
         gradient[i, 2] += c
         added = total + row
-        lost = (added - total) - row
+        carry = (added - total) - row
         total = added
     return 0.5 * total
 
@@ -114,7 +114,7 @@ def upper(count, start, nodes, weights, begin, columns, values):
     out = np.zeros(count + 1, dtype=np.int32)
     room = 32 * count + 256
     to, entries = np.empty(room, dtype=np.int32), np.empty(room)
-    total, seen = np.zeros(count), np.full(count, -1, dtype=np.int64)
+    total, mark = np.zeros(count), np.full(count, -1, dtype=np.int64)
     last = 0
     for v in range(count):
         while last + count > len(to):
@@ -127,8 +127,8 @@ def upper(count, start, nodes, weights, begin, columns, values):
                 u = columns[j]
                 if u <= v:
                     continue
-                if seen[u] != v:
-                    seen[u] = v
+                if mark[u] != v:
+                    mark[u] = v
                     total[u] = 0.0
                     to[last] = u
                     last += 1

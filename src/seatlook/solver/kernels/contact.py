@@ -9,49 +9,49 @@ from seatlook.solver.kernels.distance import distance, distance_hessian, near
 
 
 @njit(cache=True)
-def look(x, coefficients, grid, half, settled, seen, found):
-    """Distance and its gradient below every vertex, looked up anew only where one has moved.
+def measure(x, coefficients, grid, half, settlement, places, distances):
+    """Distance and its gradient below every vertex, computed only where one has moved.
 
-    ``found`` (n, 5) holds them and the offset up to which a distance of infinity means too far.
+    ``distances`` (n, 5) holds them and the offset up to which a distance of infinity means too far.
     """
     for i in range(len(half)):
-        offset = half[i] - settled[i]
-        still = x[i, 0] == seen[i, 0] and x[i, 1] == seen[i, 1] and x[i, 2] == seen[i, 2]
-        if still and (found[i, 0] != np.inf or offset <= found[i, 4]):
+        offset = half[i] - settlement[i]
+        same = x[i, 0] == places[i, 0] and x[i, 1] == places[i, 1] and x[i, 2] == places[i, 2]
+        if same and (distances[i, 0] != np.inf or offset <= distances[i, 4]):
             continue
         px, py, pz = x[i, 0], x[i, 1], x[i, 2]
-        seen[i, 0], seen[i, 1], seen[i, 2] = px, py, pz
-        found[i, 0], found[i, 4] = np.inf, offset
+        places[i, 0], places[i, 1], places[i, 2] = px, py, pz
+        distances[i, 0], distances[i, 4] = np.inf, offset
         if near(coefficients, grid, px, py, pz, offset):
-            found[i, 0], found[i, 1], found[i, 2], found[i, 3] = distance(
+            distances[i, 0], distances[i, 1], distances[i, 2], distances[i, 3] = distance(
                 coefficients, grid, px, py, pz
             )
 
 
 @njit(cache=True)
-def contact_value(found, half, settled, stiffness, gradient, settled_gradient):
-    """Energy k/2 <half - settled - phi>^2 summed over vertices; adds both its gradients."""
+def contact_value(distances, half, settlement, stiffness, gradient, settlement_gradient):
+    """Energy k/2 <half - settlement - phi>^2 summed over vertices; adds both its gradients."""
     energy = 0.0
     for i in range(len(stiffness)):
-        depth = half[i] - settled[i] - found[i, 0]
+        depth = half[i] - settlement[i] - distances[i, 0]
         if depth > 0.0:
             force = stiffness[i] * depth
             energy += 0.5 * force * depth
-            settled_gradient[i] -= force
-            gradient[i, 0] -= force * found[i, 1]
-            gradient[i, 1] -= force * found[i, 2]
-            gradient[i, 2] -= force * found[i, 3]
+            settlement_gradient[i] -= force
+            gradient[i, 0] -= force * distances[i, 1]
+            gradient[i, 1] -= force * distances[i, 2]
+            gradient[i, 2] -= force * distances[i, 3]
     return energy
 
 
 @njit(cache=True)
-def contact_state(found, half, settled, stiffness, force, normal, depth):
+def contact_state(distances, half, settlement, stiffness, force, normal, depth):
     """Normal force, unit normal and depth in the springs of every vertex; 0 when free."""
     for i in range(len(stiffness)):
         force[i], depth[i] = 0.0, 0.0
         normal[i] = 0.0
-        phi, gx, gy, gz = found[i, 0], found[i, 1], found[i, 2], found[i, 3]
-        offset = half[i] - settled[i]
+        phi, gx, gy, gz = distances[i, 0], distances[i, 1], distances[i, 2], distances[i, 3]
+        offset = half[i] - settlement[i]
         if phi < offset:
             norm = (gx * gx + gy * gy + gz * gz) ** 0.5
             depth[i] = offset - phi
@@ -60,14 +60,14 @@ def contact_state(found, half, settled, stiffness, force, normal, depth):
 
 
 @njit(cache=True)
-def contact_blocks(x, coefficients, grid, found, half, settled, stiffness, definite, blocks):
+def contact_blocks(x, coefficients, grid, distances, half, settlement, stiffness, definite, blocks):
     """Second derivative (3, 3) per vertex; ``definite`` leaves the curvature of phi out."""
     for i in range(len(stiffness)):
         blocks[i] = 0.0
-        depth = half[i] - settled[i] - found[i, 0]
+        depth = half[i] - settlement[i] - distances[i, 0]
         if depth <= 0.0:
             continue
-        g = (found[i, 1], found[i, 2], found[i, 3])
+        g = (distances[i, 1], distances[i, 2], distances[i, 3])
         k = stiffness[i]
         for a in range(3):
             for b in range(3):
@@ -81,7 +81,7 @@ def contact_blocks(x, coefficients, grid, found, half, settled, stiffness, defin
 
 
 @njit(cache=True)
-def thickness(coefficients, grid, x, normal, through):
+def thickness(coefficients, grid, x, normal, out):
     """Way through the foam from ``x`` against ``normal``, by steps of the distance."""
     for i in range(len(x)):
         way = grid[3]
@@ -95,4 +95,4 @@ def thickness(coefficients, grid, x, normal, through):
             if phi > -0.01 * grid[3]:
                 break
             way -= phi
-        through[i] = way
+        out[i] = way

@@ -16,14 +16,14 @@ def components(begin, near):
     """Vertices in connected groups, each walked breadth first, and where each group begins."""
     n = len(begin) - 1
     order, groups = np.empty(n, np.int64), np.empty(n + 1, np.int64)
-    seen = np.zeros(n, np.bool_)
+    visited = np.zeros(n, np.bool_)
     tail, count = 0, 0
     for first in range(n):
-        if seen[first]:
+        if visited[first]:
             continue
         groups[count] = head = tail
         count += 1
-        seen[first] = True
+        visited[first] = True
         order[tail] = first
         tail += 1
         while head < tail:
@@ -31,8 +31,8 @@ def components(begin, near):
             head += 1
             for e in range(begin[v], begin[v + 1]):
                 w = near[e]
-                if not seen[w]:
-                    seen[w] = True
+                if not visited[w]:
+                    visited[w] = True
                     order[tail] = w
                     tail += 1
     groups[count] = n
@@ -242,9 +242,9 @@ def rims(begin, near, order, starts, children):
         low = end = at[f]
         last = starts[f + 1]
         if low + n > len(rim):
-            more = np.empty(2 * len(rim) + n, np.int64)
-            more[:low] = rim[:low]
-            rim = more
+            longer = np.empty(2 * len(rim) + n, np.int64)
+            longer[:low] = rim[:low]
+            rim = longer
         for v in order[starts[f] : last]:
             for e in range(begin[v], begin[v + 1]):
                 r = rank[near[e]]

@@ -34,17 +34,17 @@ def stencils(edges, patch, reach, ring_start, ring):
                     nodes[count] = v
                     count += 1
         else:
-            done = first
+            begin = first
             for _ in range(reach[e]):
                 last = count
-                for i in range(done, last):
+                for i in range(begin, last):
                     for j in range(ring_start[nodes[i]], ring_start[nodes[i] + 1]):
                         v = ring[j]
                         if mark[v] != e:
                             mark[v] = e
                             nodes[count] = v
                             count += 1
-                done = last
+                begin = last
         start[e + 1] = count
     return start, nodes[:count].copy()
 

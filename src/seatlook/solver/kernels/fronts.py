@@ -171,10 +171,10 @@ def eliminate(own, below, work):
             above = room[: low * tall].reshape(low, tall)
             above[:] = own[:low, low:high]
             room = room[low * tall :]
-            left = wide - low
-            ahead = room[: low * left].reshape(low, left)
+            rest = wide - low
+            ahead = room[: low * rest].reshape(low, rest)
             ahead[:] = own[:low, low:]
-            part = room[low * left : low * left + tall * left].reshape(tall, left)
+            part = room[low * rest : low * rest + tall * rest].reshape(tall, rest)
             np.dot(above.T, ahead, part)
             own[low:high, low:] -= part
             part = room[: tall * deep].reshape(tall, deep)
@@ -183,11 +183,11 @@ def eliminate(own, below, work):
                 below[low:high] -= part
         if not corner(own, low, high, root):
             return False
-        room, left = work[tall * tall :], wide - high
-        if left:
-            ahead = room[: tall * left].reshape(tall, left)
+        room, rest = work[tall * tall :], wide - high
+        if rest:
+            ahead = room[: tall * rest].reshape(tall, rest)
             ahead[:] = own[low:high, high:]
-            part = room[tall * left : 2 * tall * left].reshape(tall, left)
+            part = room[tall * rest : 2 * tall * rest].reshape(tall, rest)
             np.dot(root, ahead, part)
             own[low:high, high:] = part
         if deep:
@@ -203,7 +203,7 @@ def update_rim(below, rest, work):
     wide, deep = below.shape
     for low in range(0, deep, STRIP):
         high = min(low + STRIP, deep)
-        tall, left = high - low, deep - low
+        tall, width = high - low, deep - low
         first, room = work[: wide * tall].reshape(wide, tall), work[wide * tall :]
         for i in range(wide):
             for j in range(tall):
@@ -211,9 +211,9 @@ def update_rim(below, rest, work):
         if tall == deep:
             np.dot(first.T, below, rest)
             return
-        second = room[: wide * left].reshape(wide, left)
+        second = room[: wide * width].reshape(wide, width)
         second[:] = below[:, low:]
-        part = room[wide * left : wide * left + tall * left].reshape(tall, left)
+        part = room[wide * width : wide * width + tall * width].reshape(tall, width)
         np.dot(first.T, second, part)
         rest[low:high, low:] = part
 

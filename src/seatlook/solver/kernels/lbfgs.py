@@ -34,20 +34,20 @@ def add_scaled(x, scale, d, out):
 
 
 @njit(cache=True)
-def first_loop(q, s, y, rho, alpha, kept):
+def first_loop(q, s, y, rho, alpha, count):
     """Walk from the newest pair to the oldest (Nocedal and Wright 2006, algorithm 7.4)."""
     memory = len(rho)
-    for j in range(kept - 1, max(kept - memory, 0) - 1, -1):
+    for j in range(count - 1, max(count - memory, 0) - 1, -1):
         i = j % memory
         alpha[i] = rho[i] * dot(s[i], q)
         add_scaled(q, -alpha[i], y[i], q)
 
 
 @njit(cache=True)
-def second_loop(q, s, y, rho, alpha, kept):
+def second_loop(q, s, y, rho, alpha, count):
     """Walk back from the oldest pair to the newest."""
     memory = len(rho)
-    for j in range(max(kept - memory, 0), kept):
+    for j in range(max(count - memory, 0), count):
         i = j % memory
         beta = rho[i] * dot(y[i], q)
         add_scaled(q, alpha[i] - beta, s[i], q)

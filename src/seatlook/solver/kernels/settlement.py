@@ -4,11 +4,11 @@ from numba import njit
 
 
 @njit(cache=True)
-def column_energy(settled, knots, stress, area, gradient, slope):
-    """Energy of columns that have given way by ``settled``; adds its gradient, fills its slope."""
+def column_energy(settlement, knots, stress, area, gradient, slope):
+    """Energy of columns that gave way by ``settlement``; adds its gradient, fills its slope."""
     last, energy = len(stress) - 1, 0.0
     for i in range(len(area)):
-        s, total, k = settled[i], 0.0, 1
+        s, total, k = settlement[i], 0.0, 1
         while k < last and s > knots[i, k]:
             total += 0.5 * (stress[k - 1] + stress[k]) * (knots[i, k] - knots[i, k - 1])
             k += 1

@@ -7,19 +7,19 @@ from seatlook.solver.kernels.membrane import curve
 
 
 @njit(cache=True)
-def wear(E, fabric, loading, counts, back, back_counts, worn):
-    """Raise the peaks to the strains E; ``worn`` (m, 2, 3) is peak, set [1] and loss [J/m2]."""
+def wear(E, fabric, loading, counts, back, back_counts, history):
+    """Raise the peaks to the strains E; ``history`` (m, 2, 3) is peak, set [1] and loss [J/m2]."""
     for t in range(len(E)):
         f = fabric[t]
         for axis in range(2):
             e = E[t, axis]
-            if back_counts[f, axis] == 0 or e <= max(worn[t, axis, 0], 0.0):
+            if back_counts[f, axis] == 0 or e <= max(history[t, axis, 0], 0.0):
                 continue
-            put_in, s, _ = curve(loading, counts, f, axis, e)
+            energy_out, s, _ = curve(loading, counts, f, axis, e)
             start = strain_at(back, back_counts, f, axis, s)
-            given_back, _, _ = curve(back, back_counts, f, axis, start)
-            worn[t, axis, 0], worn[t, axis, 1] = e, e - start
-            worn[t, axis, 2] = put_in - given_back
+            energy_back, _, _ = curve(back, back_counts, f, axis, start)
+            history[t, axis, 0], history[t, axis, 1] = e, e - start
+            history[t, axis, 2] = energy_out - energy_back
 
 
 @njit(cache=True)
@@ -34,7 +34,7 @@ def strain_at(tables, counts, f, axis, s):
 
 
 @njit(cache=True)
-def lack(E, fabric, loading, counts, back, back_counts, worn, out):
+def lack(E, fabric, loading, counts, back, back_counts, history, out):
     """Fill ``out`` (m, 2, 3): energy, stress and stiffness of the way back less the way out.
 
     Zero from the peak on, and everywhere in a fabric that goes back as it came.
@@ -44,11 +44,11 @@ def lack(E, fabric, loading, counts, back, back_counts, worn, out):
         for axis in range(2):
             e = E[t, axis]
             out[t, axis, :] = 0.0
-            if back_counts[f, axis] == 0 or e >= worn[t, axis, 0]:
+            if back_counts[f, axis] == 0 or e >= history[t, axis, 0]:
                 continue
-            psi, s, k = curve(back, back_counts, f, axis, e - worn[t, axis, 1])
+            psi, s, k = curve(back, back_counts, f, axis, e - history[t, axis, 1])
             psi_out, s_out, k_out = curve(loading, counts, f, axis, e)
-            out[t, axis, 0] = psi + worn[t, axis, 2] - psi_out
+            out[t, axis, 0] = psi + history[t, axis, 2] - psi_out
             out[t, axis, 1] = s - s_out
             out[t, axis, 2] = k - k_out
 

@@ -26,10 +26,10 @@ class Minimiser(Protocol):
         x: FloatArray,
         factor: Preconditioner | None,
         *,
-        done: Callable[[FloatArray], bool],
+        stop: Callable[[FloatArray], bool],
         iterations: int,
     ) -> Descent:
-        """Lower the potential in place of ``x`` until ``done`` with the gradient."""
+        """Lower the potential in place of ``x`` until ``stop`` says so of the gradient."""
         ...
 
 

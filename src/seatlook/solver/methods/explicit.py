@@ -1,4 +1,4 @@
-"""Explicit central differences, with the mass scaled where the time step asks for it.
+"""Explicit central differences, with the mass scaled where the time step requires it.
 
 The baseline of crash codes: no matrix is factored, but a step longer than 2 / omega_max makes the
 shortest wave grow without bound. That is seen in the potential, and raised.
@@ -34,7 +34,7 @@ class Explicit:
     Parameters
     ----------
     time_step : float [s]   0.9 of the stable step if not given
-    scale_mass : bool       add mass where the time step asks for more than there is
+    scale_mass : bool       add mass where the time step requires it
     """
 
     time_step: float | None = None
@@ -208,7 +208,7 @@ class DampedDynamics:
     Parameters
     ----------
     shape : of the unknowns, (n, 3)
-    options : a time step asks for real masses, (n, 3) [kg]
+    options : a time step requires real masses, (n, 3) [kg]
     """
 
     CHUNK = 50  # steps with the same damping, an iteration
@@ -222,9 +222,9 @@ class DampedDynamics:
     ) -> None:
         self.gradient = np.zeros(shape)
         self._heavier = 1.0
-        given = None if options is None or own is None else options.time_step
-        self._own = None if given is None else own
-        self._dt = 1.0 if given is None else given
+        step = None if options is None or own is None else options.time_step
+        self._own = None if step is None else own
+        self._dt = 1.0 if step is None else step
         self._fixed = options is not None and not options.scale_mass
 
     def minimise(
@@ -233,7 +233,7 @@ class DampedDynamics:
         x: FloatArray,
         factor: Preconditioner | None,
         *,
-        done: Callable[[FloatArray], bool],
+        stop: Callable[[FloatArray], bool],
         iterations: int,
     ) -> Descent:
         """Lower the potential in place of ``x``; no matrix is factored, ``factor`` is not used."""
@@ -241,7 +241,7 @@ class DampedDynamics:
         value, damping = potential.value(x, self.gradient), 0.0
         motion = Motion(x, np.zeros_like(x), self._masses(potential, x))
         for iteration in range(iterations):
-            if done(self.gradient):
+            if stop(self.gradient):
                 return Descent(value, iteration, self.CHUNK * iteration, stalled=False)
             if iteration % self._RENEW == self._RENEW - 1:
                 motion.mass = self._masses(potential, x)

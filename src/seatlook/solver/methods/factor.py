@@ -13,7 +13,7 @@ from seatlook.errors import SolverError
 from seatlook.model import FloatArray, IntArray
 from seatlook.solver.methods.multifrontal import Cholesky, Pattern
 
-_KEPT = 6  # patterns: those of a process, while ties join one after the other
+_CACHE_SIZE = 6  # patterns: those of a process, while ties join one after the other
 _patterns: OrderedDict[tuple[bytes, bytes], tuple[Pattern, IntArray, IntArray]] = OrderedDict()
 _ROUNDING = 1e-12  # of the diagonal, that holds what nothing holds but rounding
 
@@ -37,19 +37,19 @@ class Renewed:
     LASTS = 6
 
     def __init__(self, make: Callable[[], Preconditioner]) -> None:
-        self._make, self._left = make, 0
-        self._now: Preconditioner | None = None
+        self._make, self._uses = make, 0
+        self._current: Preconditioner | None = None
 
     def solve(self, right: FloatArray, out: FloatArray) -> None:
         """Apply it to (n, 3) forces."""
-        if self._now is None or self._left == 0:
-            self._now, self._left = self._make(), self.LASTS
-        self._left -= 1
-        self._now.solve(right, out)
+        if self._current is None or self._uses == 0:
+            self._current, self._uses = self._make(), self.LASTS
+        self._uses -= 1
+        self._current.solve(right, out)
 
     def expire(self) -> None:
         """Have it made again at the next use."""
-        self._left = 0
+        self._uses = 0
 
 
 class Factor:
@@ -95,7 +95,7 @@ def _pattern(matrix: csc_array) -> tuple[Pattern, IntArray, IntArray]:
         rows, columns = rows[lower], columns[lower]
         pattern = Pattern(rows, columns, matrix.shape[0])
         _patterns[key] = pattern, lower, np.flatnonzero(rows == columns)
-        if len(_patterns) > _KEPT:
+        if len(_patterns) > _CACHE_SIZE:
             _patterns.popitem(last=False)
     _patterns.move_to_end(key)
     return _patterns[key]

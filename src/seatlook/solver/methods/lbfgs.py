@@ -64,7 +64,7 @@ class Lbfgs:
     Parameters
     ----------
     shape : of the unknowns, (n, 3)
-    memory : pairs kept
+    memory : number of pairs
     step_cap : float [m]   longest way a vertex may go in one iteration
     """
 
@@ -86,50 +86,50 @@ class Lbfgs:
         x: FloatArray,
         factor: Preconditioner | None,
         *,
-        done: Callable[[FloatArray], bool],
+        stop: Callable[[FloatArray], bool],
         iterations: int,
     ) -> Descent:
         """Lower the potential in place of ``x``; every step obeys Armijo's rule, up to rounding.
 
-        ``done`` looks at the gradient, which stays readable as ``self.gradient``. Where a fresh
+        ``stop`` looks at the gradient, which stays readable as ``self.gradient``. Where a fresh
         matrix can be had, pairs that led to a step cut short are forgotten for one: they come from
         before a contact or a fold, and lead on into it.
         """
         value = potential.value(x, self.gradient)
-        kept, evaluations = 0, 1
+        pairs, evaluations = 0, 1
         for iteration in range(iterations):
-            if done(self.gradient):
+            if stop(self.gradient):
                 return Descent(value, iteration, evaluations, stalled=False)
-            self._turn(factor, kept)
+            self._turn(factor, pairs)
             slope = kernel.dot(self._direction, self.gradient)
             if not slope < 0.0:
-                kept = 0
-                self._turn(factor, kept)
+                pairs = 0
+                self._turn(factor, pairs)
                 slope = kernel.dot(self._direction, self.gradient)
             new, tries = self._search(potential, x, value, slope)
             evaluations += tries
             if new is None:
-                if kept == 0:
+                if pairs == 0:
                     return Descent(value, iteration, evaluations, stalled=True)
-                kept = 0
+                pairs = 0
                 continue
-            kept = self._remember(x, kept)
+            pairs = self._remember(x, pairs)
             value = new
             if self._share < _CUT and isinstance(factor, Renewed):
-                kept = 0
+                pairs = 0
                 factor.expire()
         return Descent(value, iterations, evaluations, stalled=False)
 
-    def _turn(self, factor: Preconditioner | None, kept: int) -> None:
-        """Two-loop recursion over the last ``min(kept, memory)`` pairs."""
+    def _turn(self, factor: Preconditioner | None, pairs: int) -> None:
+        """Two-loop recursion over the last ``min(pairs, memory)`` pairs."""
         q, work = self._direction, self._work
         np.negative(self.gradient, out=work)
-        kernel.first_loop(work, self._s, self._y, self._rho, self._alpha, kept)
+        kernel.first_loop(work, self._s, self._y, self._rho, self._alpha, pairs)
         if factor is None:
             np.copyto(q, work)
         else:
             factor.solve(work, q)
-        kernel.second_loop(q, self._s, self._y, self._rho, self._alpha, kept)
+        kernel.second_loop(q, self._s, self._y, self._rho, self._alpha, pairs)
 
     def _search(
         self, potential: Potential, x: FloatArray, value: float, slope: float
@@ -150,8 +150,8 @@ class Lbfgs:
             if new <= value + self.ARMIJO * step * slope:
                 return new, tries
             if new <= value + _ROUNDING * abs(value):
-                left = kernel.dot(self._direction, self._trial_gradient)
-                if abs(left) <= -_FLATTER * slope:
+                end_slope = kernel.dot(self._direction, self._trial_gradient)
+                if abs(end_slope) <= -_FLATTER * slope:
                     return new, tries
             excess = new - value - step * slope
             if not np.isfinite(excess):
@@ -160,9 +160,9 @@ class Lbfgs:
                 step *= min(max(-0.5 * step * slope / excess, 0.1), 0.5)
         return None, tries
 
-    def _remember(self, x: FloatArray, kept: int) -> int:
+    def _remember(self, x: FloatArray, pairs: int) -> int:
         """Store the accepted pair, move ``x`` there; a pair without positive curvature is left."""
-        i = kept % self.memory
+        i = pairs % self.memory
         np.subtract(self._trial, x, out=self._work)
         np.subtract(self._trial_gradient, self.gradient, out=self._direction)
         curvature = kernel.dot(self._work, self._direction)
@@ -170,8 +170,8 @@ class Lbfgs:
         np.copyto(x, self._trial)
         np.copyto(self.gradient, self._trial_gradient)
         if curvature <= 1e-14 * norm or norm == 0.0:
-            return kept
+            return pairs
         np.copyto(self._s[i], self._work)
         np.copyto(self._y[i], self._direction)
         self._rho[i] = 1.0 / curvature
-        return kept + 1
+        return pairs + 1

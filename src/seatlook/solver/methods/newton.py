@@ -149,10 +149,10 @@ def newton(
             if downhill:
                 factor = _definite(potential, state.x, hessian, factor)
             step = potential.spread(-factor.solve(potential.gather(gradient)))
-            found = line_search(potential, (state.x, energy, gradient), step, max_step)
-            if found is None:
+            point = line_search(potential, (state.x, energy, gradient), step, max_step)
+            if point is None:
                 break
-            x, energy, gradient = found
+            x, energy, gradient = point
         history.append(energy)
         state = replace(
             state,

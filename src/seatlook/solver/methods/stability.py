@@ -1,4 +1,4 @@
-"""Whether an equilibrium is stable, asked of the gradient alone."""
+"""Whether an equilibrium is stable, found from the gradient alone."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def downhill(
     residual, solved = np.random.default_rng(0).standard_normal(x.shape), np.empty_like(x)
     factor.solve(residual, solved)
     direction = solved.copy()
-    left = first = guess = kernel.dot(residual, solved)
+    square = first = guess = kernel.dot(residual, solved)
     for _ in range(most):
         size = kernel.largest_row(direction)
-        if not left > _ENOUGH**2 * first or size == 0.0:
+        if not square > _ENOUGH**2 * first or size == 0.0:
             break
         way = _WAY / size
         potential.value(x + way * direction, ahead)
@@ -45,11 +45,11 @@ def downhill(
         curvature = kernel.dot(direction, product)
         if curvature <= 0.0:
             return direction if curvature < _DOWN * guess else None
-        residual -= left / curvature * product
+        residual -= square / curvature * product
         factor.solve(residual, solved)
-        fresh = kernel.dot(residual, solved)
-        share, left = fresh / left, fresh
+        new_square = kernel.dot(residual, solved)
+        share, square = new_square / square, new_square
         direction = solved + share * direction
         # The new part and the old direction are conjugate in the factor's own matrix.
-        guess = fresh + share**2 * guess
+        guess = new_square + share**2 * guess
     return None

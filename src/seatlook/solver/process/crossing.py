@@ -42,8 +42,8 @@ def hem_crossings(cover: Cover, positions: FloatArray) -> IntArray:
     below = np.flatnonzero(hem.density > 0.0)
     faces = np.concatenate([cover.faces, cover.faces[below] + n])
     pairs = intersecting_pairs(np.concatenate([positions, layer]), faces)
-    through = pairs[(pairs[:, 0] < m) & (pairs[:, 1] >= m)]
-    return np.column_stack([below[through[:, 1] - m], through[:, 0]])
+    crossings = pairs[(pairs[:, 0] < m) & (pairs[:, 1] >= m)]
+    return np.column_stack([below[crossings[:, 1] - m], crossings[:, 0]])
 
 
 def zone_crossings(cover: Cover, pairs: IntArray) -> dict[str, int]:

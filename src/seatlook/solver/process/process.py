@@ -30,7 +30,7 @@ from seatlook.solver.process.state import OfPositions, StatePotential, masses
 from seatlook.solver.process.ties import Ties
 from seatlook.solver.process.transfer import transfer
 
-_KEPT_VELOCITY = 0.5  # share of the velocity that a step hands to the next
+_CARRIED_VELOCITY = 0.5  # share of the velocity that a step hands to the next
 _STEP_TOLERANCE = 0.02  # out-of-balance force over mean elastic force that ends a time step
 _REST_TOLERANCE = 3e-4  # the same for a static solve, safely below RESIDUAL
 # Above this ratio B / (E h^2) bending sets the pace of the minimiser and joins the matrix.
@@ -38,7 +38,7 @@ _STIFF_BENDING = 0.02
 
 # Strain of a taut cover, for its stiffness across itself; raised when steps prove too long.
 _TAUT = 0.01
-_BACKTRACKING = 1.5  # evaluations per iteration that say so
+_BACKTRACKING = 1.5  # evaluations per iteration from which they are too long
 _HELD = 1e12  # N/m, keeps tied vertices out of the normal motion
 # Products of the Hessian that look for a way down. With the factor at hand a flat cover 4 % past
 # its buckling load shows one within 9, and to know that there is none takes 30 to 190.
@@ -51,7 +51,7 @@ class Record(NamedTuple):
     """One row of the history: time [s], energies [J], gap [m]; ``elastic`` is the sheet's own.
 
     Work [J] in the step: of the ties and of the weight on the cover, of the cover on what rubs;
-    ``damping`` is by how much it lowers the potential of all, which nothing stores; ``placed``
+    ``damping`` is the loss of the whole potential, which nothing stores; ``placed``
     what the panels' imperfection stored before the first step.
     """
 
@@ -115,7 +115,7 @@ class Process:
         self._integrator: Integrator | None = None
         self._taut, self._evaluations, self._fresh = _TAUT, 0, True
         # Asked for several times between two minimisations, at one and the same shape.
-        self._seen, self._seen_energy = np.full_like(self.x, np.nan), 0.0
+        self._measured, self._measured_energy = np.full_like(self.x, np.nan), 0.0
         self._sheet_force = np.zeros_like(self.state)
         self._work, self._start = np.zeros_like(self.state), np.zeros_like(self.x)
 
@@ -145,7 +145,7 @@ class Process:
         self._lag()
         if isinstance(self.method, Explicit):
             return self._integrate(self.method, refactor=refactor)
-        np.multiply(self.v, _KEPT_VELOCITY * self.dt, out=self.inertia.free)
+        np.multiply(self.v, _CARRIED_VELOCITY * self.dt, out=self.inertia.free)
         self.inertia.free += self.x
         if refactor or self._factor is None:
             self._factor = self._preconditioner(lambda: Factor(self._matrix()))
@@ -182,7 +182,9 @@ class Process:
             foam = self.foundation.energy(self.state, self._work)
         energy = self._static_value()
         if not np.isfinite(energy):
-            raise SolverError(f"energy is {energy} at {self.time:.3g} s: the cover has blown up")
+            raise SolverError(
+                f"energy is {energy} at {self.time:.3g} s: the solution grew without bound"
+            )
         speed2 = np.einsum("ij,ij->i", self.v, self.v)
         return Record(
             time=self.time,
@@ -196,9 +198,9 @@ class Process:
         )
 
     def downhill(self, kick: float = 0.0) -> bool:
-        """Whether the static potential curves downwards somewhere; with a kick [m], go there.
+        """Whether the static stiffness is negative in a direction; with a kick [m], move that way.
 
-        What lags (friction, multipliers) is held. The explicit method has nothing to ask with.
+        What lags (friction, multipliers) is held. False for the explicit method: it has no factor.
         """
         factor, most = self._factor or self._preconditioner(self._split), _LOOK
         if self._nearest is not None:
@@ -236,7 +238,7 @@ class Process:
             self._moving,
             self.state,
             factor,
-            done=lambda gradient: largest_row(gradient) <= limit,
+            stop=lambda gradient: largest_row(gradient) <= limit,
             iterations=iterations,
         )
         np.subtract(self.x, self._start, out=self.v)
@@ -263,7 +265,7 @@ class Process:
     def _integrate(self, options: Explicit, *, refactor: bool) -> Record:
         """Go through a time step by central differences."""
         if self._integrator is None:
-            damping = -np.log(_KEPT_VELOCITY) / self.dt
+            damping = -np.log(_CARRIED_VELOCITY) / self.dt
             own = masses(self._mass, len(self.state))
             self._integrator = Integrator(options, own, damping)
             refactor = True
@@ -283,7 +285,7 @@ class Process:
             self.foundation.lag(self.state)
 
     def _preconditioner(self, sheet: Callable[[], Preconditioner]) -> Preconditioner | None:
-        """Matrix for a method that wants one, of the positions and what lies below."""
+        """Matrix for a method that uses one, of the positions and what lies below."""
         if self._nearest is not None:
             return Renewed(partial(self._projected, self._nearest))
         if isinstance(self.method, Explicit):
@@ -312,10 +314,10 @@ class Process:
 
     def _sheet_energy(self) -> float:
         """Elastic energy [J] of the sheet, gradient in ``_sheet_force``; once for each shape."""
-        if not np.array_equal(self._seen, self.x):
-            self._seen_energy = self._elastic.value(self.state, self._sheet_force)
-            np.copyto(self._seen, self.x)
-        return self._seen_energy
+        if not np.array_equal(self._measured, self.x):
+            self._measured_energy = self._elastic.value(self.state, self._sheet_force)
+            np.copyto(self._measured, self.x)
+        return self._measured_energy
 
     def _static_value(self) -> float:
         """Potential [J] of all but inertia, its gradient in ``_work``."""

@@ -16,8 +16,8 @@ class SolverSettings:
     Parameters
     ----------
     method : "lbfgs" with prefactored scalar matrices; "newton" with the projected Hessian of chords
-        and hinges factored every few iterations, for limp sheets that turn far; both look at rest
-        for a direction that leads downhill and leave an unstable balance; "explicit" central
+        and hinges factored every few iterations, for limp sheets that turn far; both test at rest
+        whether the balance is stable, and leave it if it is not; "explicit" central
         differences with the time step their mesh allows, or ``Explicit(time_step=...,
         scale_mass=True)``
     dt : float [s]      time step; what lags is updated once in it

@@ -65,26 +65,26 @@ def schedule(stages: Sequence[Stage], dt: float) -> list[Step]:
 
 def check_stages(cover: Cover) -> None:
     """Refuse ties whose stage is not in the plan."""
-    known = [stage.name for stage in cover.stages]
+    names = [stage.name for stage in cover.stages]
     ties: list[Stitching | Anchor] = [*cover.stitchings, *cover.anchors]
     for tie in ties:
-        if tie.stage not in known:
+        if tie.stage not in names:
             raise InputError.single(
                 f"{tie.name}.stage",
                 got=repr(tie.stage),
-                expected=f"one of {known}",
-                hint=did_you_mean(tie.stage, known),
+                expected=f"one of {names}",
+                hint=did_you_mean(tie.stage, names),
             )
 
 
 def _progress(stages: Sequence[Stage], time: float) -> dict[str, float]:
     """How far each stage is on its way; beyond the end, time since it began over its length."""
-    passed = {s.name: (time - s.start) / (s.end - s.start) for s in stages}
+    shares = {s.name: (time - s.start) / (s.end - s.start) for s in stages}
     smooth = {s.name for s in stages if s.ramp == "smooth"}
     # Rounding of the time must not let a stage begin with the last step of the one before.
     return {
         name: 0.0 if share <= _BEGUN else _eased(share) if name in smooth else share
-        for name, share in passed.items()
+        for name, share in shares.items()
     }
 
 

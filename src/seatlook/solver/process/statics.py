@@ -45,7 +45,7 @@ def equilibrium(
     tolerance: float,
     max_iterations: int | None,
 ) -> Equilibrium:
-    """Find a stable equilibrium; whatever the method, the exact Hessian has the last word.
+    """Find a stable equilibrium; whatever the method, the exact Hessian decides.
 
     Parameters
     ----------
@@ -54,28 +54,28 @@ def equilibrium(
     name = method if isinstance(method, str) else "explicit"
     most = MOST.get(name, MOST["lbfgs"]) if max_iterations is None else max_iterations
     if method == "newton":
-        found = _by_newton(sheet, potential, x, tolerance, most)
+        state = _by_newton(sheet, potential, x, tolerance, most)
         most = MOST["lbfgs"] if max_iterations is None else most
     else:
-        found = _descend(sheet, potential, x, method, tolerance=tolerance, most=most)
+        state = _descend(sheet, potential, x, method, tolerance=tolerance, most=most)
     for kicks in range(_MOST_KICKS + 1):
-        if found.residual > tolerance:
-            return found
-        hessian = potential.hessian(found.x, definite=False)
+        if state.residual > tolerance:
+            return state
+        hessian = potential.hessian(state.x, definite=False)
         factor, downhill = factorise(hessian)
-        found = replace(found, downhill=downhill, kicks=kicks)
-        left = most - found.iterations
-        if downhill == 0 or kicks == _MOST_KICKS or left <= 0:
-            return found
-        x = push(potential, found.x, hessian, factor, _KICK * sheet.thickness.max())
-        on = _descend(sheet, potential, x, method, tolerance=tolerance, most=left)
-        found = replace(
-            on,
-            iterations=found.iterations + on.iterations,
-            energy=np.concatenate([found.energy, on.energy]),
+        state = replace(state, downhill=downhill, kicks=kicks)
+        rest = most - state.iterations
+        if downhill == 0 or kicks == _MOST_KICKS or rest <= 0:
+            return state
+        x = push(potential, state.x, hessian, factor, _KICK * sheet.thickness.max())
+        descent = _descend(sheet, potential, x, method, tolerance=tolerance, most=rest)
+        state = replace(
+            descent,
+            iterations=state.iterations + descent.iterations,
+            energy=np.concatenate([state.energy, descent.energy]),
             kicks=kicks + 1,
         )
-    return found
+    return state
 
 
 class _Free(Sum):
@@ -121,24 +121,24 @@ def _descend(
     lower = minimiser("lbfgs" if method == "newton" else method, x.shape, own)
     reduced = _Free(potential)
     energy, gradient = potential.value(x)
-    residual, spent, history = potential.residual(x, gradient), 0, [energy]
-    while residual > tolerance and spent < most:
+    residual, iterations, history = potential.residual(x, gradient), 0, [energy]
+    while residual > tolerance and iterations < most:
         limit = 0.9 * tolerance * potential.force_scale(x)
         factor = _matrix(sheet, potential, x, method)
-        went = lower.minimise(
+        descent = lower.minimise(
             reduced,
             x,
             factor,
-            done=lambda g, limit=limit: largest_row(g) <= limit,  # type: ignore[misc]
-            iterations=min(_ROUND, most - spent),
+            stop=lambda g, limit=limit: largest_row(g) <= limit,  # type: ignore[misc]
+            iterations=min(_ROUND, most - iterations),
         )
-        spent += max(went.iterations, 1)
+        iterations += max(descent.iterations, 1)
         energy, gradient = potential.value(x)
         residual = potential.residual(x, gradient)
         history.append(energy)
-        if went.stalled and went.iterations == 0:
+        if descent.stalled and descent.iterations == 0:
             break
-    return Equilibrium(x, residual, np.array(history), spent, -1, 0)
+    return Equilibrium(x, residual, np.array(history), iterations, -1, 0)
 
 
 def _matrix(

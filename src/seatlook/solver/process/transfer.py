@@ -30,20 +30,20 @@ def transfer(source: Cover, values: FloatArray, target: Cover) -> FloatArray:
         )
     out = np.empty((len(target.rest), values.shape[1]))
     for panel, name in enumerate(target.panel_names):
-        given, wanted = _vertices(source, panel), _vertices(target, panel)
-        if len(given) < _NEIGHBOURS:
+        old, new = _vertices(source, panel), _vertices(target, panel)
+        if len(old) < _NEIGHBOURS:
             raise InputError.single(
                 "start",
-                got=f"{len(given)} vertices in panel {name}",
+                got=f"{len(old)} vertices in panel {name}",
                 expected=f"at least {_NEIGHBOURS}",
             )
-        away, near = cKDTree(source.rest[given]).query(target.rest[wanted], _NEIGHBOURS)
-        near = given[near]
-        offset = source.rest[near] - target.rest[wanted][:, None]
+        away, near = cKDTree(source.rest[old]).query(target.rest[new], _NEIGHBOURS)
+        near = old[near]
+        offset = source.rest[near] - target.rest[new][:, None]
         square = np.square(away)
         weight = 1.0 / (square + _NEAR * square.mean(axis=1, keepdims=True))
         share = _constant_term(offset, np.sqrt(weight))
-        out[wanted] = np.einsum("nk,nkc->nc", share, values[near])
+        out[new] = np.einsum("nk,nkc->nc", share, values[near])
     return out
 
 

@@ -1,4 +1,4 @@
-"""Whether a result may be believed, and the figures that say so."""
+"""The verdict on a result, and the figures it rests on."""
 
 from __future__ import annotations
 
@@ -25,33 +25,33 @@ _COLLAPSED = 1e-3  # of the rest area
 
 
 def reasons(process: Process, record: Record) -> list[str]:
-    """What keeps a result from being believed; empty when nothing does.
+    """Reasons why a result cannot be trusted; none where it can.
 
     Raises
     ------
     InvertedElementError   a triangle has lost its area
     """
     _check_faces(process)
-    found = unrest(process, record)
+    causes = unrest(process, record)
     if process.foundation is not None:
-        found += _contact_reasons(process, process.foundation)
-    return found
+        causes += _contact_reasons(process, process.foundation)
+    return causes
 
 
 def unrest(process: Process, record: Record) -> list[str]:
-    """What more rounds may cure: forces out of balance, movement, gaps."""
-    found = []
+    """Reasons that more rounds may remove: forces out of balance, movement, gaps."""
+    causes = []
     if not record.residual <= RESIDUAL:
-        found.append(f"out-of-balance force {record.residual:.2g} of the mean elastic force")
+        causes.append(f"out-of-balance force {record.residual:.2g} of the mean elastic force")
     if record.kinetic > KINETIC * (record.elastic + record.foam):
-        found.append("the cover still moves")
+        causes.append("the cover still moves")
     if record.seam_gap >= SEAM_GAP:
-        found.append(f"a seam is open by {1e3 * record.seam_gap:.2g} mm")
+        causes.append(f"a seam is open by {1e3 * record.seam_gap:.2g} mm")
     for kind in ("hook", "frame"):
         gap = process.ties.largest_gap(process.x, kind)
         if gap >= ANCHOR_GAP:
-            found.append(f"a {kind} is off by {1e3 * gap:.2g} mm")
-    return found
+            causes.append(f"a {kind} is off by {1e3 * gap:.2g} mm")
+    return causes
 
 
 def figures(process: Process, records: Sequence[Record]) -> dict[str, float]:
@@ -95,30 +95,30 @@ def _crossings(process: Process) -> dict[str, float]:
 def _check_faces(process: Process) -> None:
     p = process.x[process.cover.faces]
     area = 0.5 * np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1)
-    lost = np.flatnonzero(area < _COLLAPSED * process.cover.rest_area)
-    if lost.size:
-        name = process.cover.panel_names[process.cover.panel[lost[0]]]
+    faces = np.flatnonzero(area < _COLLAPSED * process.cover.rest_area)
+    if faces.size:
+        name = process.cover.panel_names[process.cover.panel[faces[0]]]
         raise InvertedElementError(
-            f"{lost.size} triangles have lost their area, the first is {lost[0]} in panel {name}"
+            f"{faces.size} triangles have lost their area, the first is {faces[0]} in panel {name}"
         )
 
 
 def _contact_reasons(process: Process, foundation: Foundation) -> list[str]:
-    """Where the foam is asked for more than its curve and thickness give."""
-    found = []
+    """Reasons in the foam: pressed beyond its curve, or by too much of its thickness."""
+    causes = []
     figures = foundation.figures(process.state)
     pressure, highest = figures["contact_column_pressure_max"], foundation.material.stress[-1]
     if pressure > highest:
-        found.append(
+        causes.append(
             f"pressure {pressure:.3g} Pa on the foam, whose curve ends at {highest:.3g} Pa"
         )
     compression = figures["contact_compression_max"]
     if compression >= COMPRESSION:
-        found.append(f"foam pressed to {100 * compression:.0f} % of its thickness")
+        causes.append(f"foam compressed by {100 * compression:.0f} % of its thickness")
     error = _resultant_error(process)
     if error > RESULTANT:
-        found.append(f"foam pressure and resultant differ by {100 * error:.2g} %")
-    return found
+        causes.append(f"foam pressure and resultant differ by {100 * error:.2g} %")
+    return causes
 
 
 def _resultant_error(process: Process) -> float:
