@@ -62,5 +62,5 @@ def test_a_cover_goes_on_from_a_coarser_mesh():
     coarse = solve(laid(0.02), strict=True)
     started = solve(laid(0.01), start=coarse, strict=True)
     whole = solve(laid(0.01), strict=True)
-    assert set(np.unique(started.history["time"])) == {0.0}
+    assert set(np.unique(started.history["time"])) == {0.1}  # nothing but the rest
     np.testing.assert_allclose(started.positions[:, 2], whole.positions[:, 2], atol=2e-5)
