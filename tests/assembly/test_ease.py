@@ -32,21 +32,21 @@ def measured(scene):
 
 
 def test_ease_is_near_side_minus_far_side():
-    found = measured(notched((), (), depth_b=0.104))
-    assert found.length_a == pytest.approx(0.1)
-    assert found.length_b == pytest.approx(0.104)
-    assert found.ease == pytest.approx(-0.004)
-    assert found.share == pytest.approx(-0.004 / 0.104)
-    assert found.shares == pytest.approx([-0.004 / 0.104])
+    result = measured(notched((), (), depth_b=0.104))
+    assert result.length_a == pytest.approx(0.1)
+    assert result.length_b == pytest.approx(0.104)
+    assert result.ease == pytest.approx(-0.004)
+    assert result.share == pytest.approx(-0.004 / 0.104)
+    assert result.shares == pytest.approx([-0.004 / 0.104])
 
 
 def test_ease_lies_between_the_notches_that_meet():
     """Up to the notch both sides are as long; all of the 4 mm lie beyond it."""
-    found = measured(notched((0.04,), (0.04,), depth_b=0.104))
-    assert found.matched
-    assert found.notches_a == pytest.approx([0.4])
-    assert found.notches_b == pytest.approx([0.04 / 0.104])
-    assert found.shares == pytest.approx([0.0, 60 / 64 - 1])
+    result = measured(notched((0.04,), (0.04,), depth_b=0.104))
+    assert result.matched
+    assert result.notches_a == pytest.approx([0.4])
+    assert result.notches_b == pytest.approx([0.04 / 0.104])
+    assert result.shares == pytest.approx([0.0, 60 / 64 - 1])
 
 
 def test_stitches_lie_at_equal_shares_between_notches():
@@ -62,8 +62,8 @@ def test_stitches_lie_at_equal_shares_between_notches():
 
 def test_unequal_numbers_of_notches_match_nothing():
     scene = notched((0.03,), (0.05, 0.07), depth_b=0.104)
-    found = measured(scene)
-    assert not found.matched
+    result = measured(scene)
+    assert not result.matched
     cover = assemble(scene)
     (seam,) = cover.stitchings
     a, b = seam.a.at(cover.uv)[:, 1], seam.b.at(cover.uv)[:, 1]
@@ -100,12 +100,12 @@ def test_sample_pattern():
     pattern = read_pattern(
         DATA / "seat_cushion_demo_aama.dxf", DATA / "seat_cushion_demo.seams.toml"
     )
-    found = {s.name: seam_ease(pattern, s) for s in pattern.seams}
-    assert found["left bolster"].matched
-    assert found["left bolster"].notches_a == pytest.approx([0.5], abs=0.01)
-    assert len(found["front"].notches_b) == 3
-    assert not found["front"].matched
-    for one in found.values():
+    result = {s.name: seam_ease(pattern, s) for s in pattern.seams}
+    assert result["left bolster"].matched
+    assert result["left bolster"].notches_a == pytest.approx([0.5], abs=0.01)
+    assert len(result["front"].notches_b) == 3
+    assert not result["front"].matched
+    for one in result.values():
         assert abs(one.ease) < 0.1e-3
 
 

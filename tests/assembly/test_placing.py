@@ -14,8 +14,8 @@ from support import scenes
 
 def without(*names):
     scene = scenes.two_panels(element_size=0.02)
-    kept = {n: p for n, p in scene.placement.items() if n not in names}
-    return dataclasses.replace(scene, placement=MappingProxyType(kept))
+    poses = {n: p for n, p in scene.placement.items() if n not in names}
+    return dataclasses.replace(scene, placement=MappingProxyType(poses))
 
 
 def test_stated_poses_stay():

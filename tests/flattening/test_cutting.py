@@ -64,10 +64,10 @@ def seam_lines_of(surface):
 )
 def test_areas_on_a_plane_are_exact(kind, line, front):
     cut = cut_along(sheet(kind), {"A": line})
-    found = areas(cut)
-    assert sum(found.values()) == pytest.approx(LENGTH * WIDTH, abs=1e-12)
-    assert found["PANEL_1"] == pytest.approx(front, abs=1e-9)
-    assert found["PANEL_2"] == pytest.approx(LENGTH * WIDTH - front, abs=1e-9)
+    result = areas(cut)
+    assert sum(result.values()) == pytest.approx(LENGTH * WIDTH, abs=1e-12)
+    assert result["PANEL_1"] == pytest.approx(front, abs=1e-9)
+    assert result["PANEL_2"] == pytest.approx(LENGTH * WIDTH - front, abs=1e-9)
 
 
 def test_outlines_are_made_of_lines_and_border_alone():
@@ -113,16 +113,16 @@ def test_panels_keep_the_names_of_the_groups_they_were_part_of():
 def test_a_cylinder_cut_aslant_comes_out_flat():
     flat = np.column_stack([np.linspace(0, 0.15, 16), np.linspace(0.1, 0.2, 16)])
     cut = cut_along(rolled(), {"A": on_cylinder(flat)})
-    found = flatten(cut)
+    result = flatten(cut)
     exact = np.hypot(0.15, 0.1)
-    (seam,) = found.seams
+    (seam,) = result.seams
     assert seam.seam == "A"
     assert seam.a == pytest.approx(exact, rel=1e-3)
     assert seam.b == pytest.approx(seam.a, abs=5e-5)
     assert list(areas(cut).values()) == pytest.approx([0.15 * WIDTH / 2] * 2, rel=2e-3)
     # The area lost is that of the mesh itself, chords for arcs.
     assert sum(areas(cut).values()) == pytest.approx(sum(areas(rolled()).values()), rel=1e-4)
-    assert max(panel.rms for panel in found.panels) < 1e-3
+    assert max(panel.rms for panel in result.panels) < 1e-3
 
 
 def test_demo_cut_along_its_own_seams_is_the_demo_again(surface, flattened):

@@ -61,10 +61,10 @@ def test_fabric_rows_add_up_to_its_energy():
 def test_energy_is_the_area_below_the_curve():
     """Warp alone, across a knot, against numeric integration."""
     strain = np.array([0.03, 0.08])
-    for e, found in zip(strain, fabric_energy(np.outer(strain, [1, 0, 0]), CLOTH), strict=True):
+    for e, result in zip(strain, fabric_energy(np.outer(strain, [1, 0, 0]), CLOTH), strict=True):
         at = np.linspace(0, e, 20_001)
         tension = CLOTH.warp.tension(at)
-        assert found == pytest.approx(np.sum((tension[1:] + tension[:-1]) / 2) * at[1], rel=1e-6)
+        assert result == pytest.approx(np.sum((tension[1:] + tension[:-1]) / 2) * at[1], rel=1e-6)
 
 
 def test_stretch_along_the_grain_is_that_of_the_form():
@@ -89,11 +89,11 @@ def test_demo_stores_less_in_the_fabric_it_was_flattened_for(surface, flattened)
     cut = flatten(surface, fabrics=dict.fromkeys(surface.panel_names, CLOTH))
     area = face_areas(surface.vertices, surface.faces)
     for i, panel in enumerate(cut.panels):
-        mine = surface.panel == i
-        plain = area[mine] @ fabric_energy(flattened.grain_strain[mine], CLOTH)
+        own = surface.panel == i
+        plain = area[own] @ fabric_energy(flattened.grain_strain[own], CLOTH)
         assert panel.energy < 0.9 * plain, panel.panel
         assert panel.energy == pytest.approx(
-            area[mine] @ fabric_energy(cut.grain_strain[mine], CLOTH)
+            area[own] @ fabric_energy(cut.grain_strain[own], CLOTH)
         )
     assert max(abs(seam.difference) for seam in cut.seams) < SEAM_TOLERANCE
     assert all(panel.energy is None for panel in flattened.panels)

@@ -29,15 +29,15 @@ def width(panel):
 
 def test_developable_panels_come_out_exactly():
     surface, flat = half_pipe(h=0.005)
-    found = flatten(surface)
+    result = flatten(surface)
     for patch, name in zip(surface.patches(), "LR", strict=True):
         exact = flat[patch.source]
-        moved = found.flat[name] - found.flat[name].mean(axis=0)
+        moved = result.flat[name] - result.flat[name].mean(axis=0)
         rotation, _ = np.linalg.qr(np.eye(2))
         assert np.abs(moved - (exact - exact.mean(axis=0)) @ rotation.T).max() < 1e-4 * 0.16
-    assert np.abs(found.strain).max() < 1e-3
-    assert [p.panel for p in found.panels] == ["L", "R"]
-    assert max(p.rms for p in found.panels) < 2e-4
+    assert np.abs(result.strain).max() < 1e-3
+    assert [p.panel for p in result.panels] == ["L", "R"]
+    assert max(p.rms for p in result.panels) < 2e-4
 
 
 def test_demo_seams_are_equally_long(flattened):
@@ -126,8 +126,8 @@ def test_sharp_corners_of_free_edges_are_corners():
         assert len(panel.corners) == 4
         low, high = panel.outline.min(axis=0), panel.outline.max(axis=0)
         box = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
-        found = panel.outline[panel.corners]
-        gaps = np.linalg.norm(found[:, None] - np.array(box)[None], axis=2)
+        result = panel.outline[panel.corners]
+        gaps = np.linalg.norm(result[:, None] - np.array(box)[None], axis=2)
         assert gaps.min(axis=0).max() < 1e-4
 
 

@@ -46,10 +46,10 @@ def test_bad_allowances_are_named():
 
 @pytest.mark.parametrize(("length", "count"), [(0.05, 1), (0.29, 1), (0.31, 3), (0.7, 5)])
 def test_notches_are_odd_in_number_and_hold_the_middle(length, count):
-    found = notch_fractions(length)
-    assert len(found) == count
-    assert found[count // 2] == 0.5
-    assert np.allclose(found, 1 - found[::-1])
+    result = notch_fractions(length)
+    assert len(result) == count
+    assert result[count // 2] == 0.5
+    assert np.allclose(result, 1 - result[::-1])
 
 
 def test_notches_of_both_panels_meet(flattened):

@@ -69,9 +69,9 @@ def test_held_edges_get_their_length():
     space = dome(flat, 0.25)
     loop = mesh.boundary_loops(faces)[0]
     pairs = np.column_stack([loop, np.roll(loop, -1)])
-    wanted = 1.01 * lengths(space, pairs)
-    back = flatten_patch(space, faces, HeldEdges(vertices=pairs, length=wanted))
-    assert np.abs(lengths(back, pairs) / wanted - 1).max() < 2e-4
+    expected = 1.01 * lengths(space, pairs)
+    back = flatten_patch(space, faces, HeldEdges(vertices=pairs, length=expected))
+    assert np.abs(lengths(back, pairs) / expected - 1).max() < 2e-4
 
 
 def test_start_does_not_change_the_result():

@@ -26,8 +26,8 @@ def grid(labels, names):
 
 def test_sides_of_two_panels_side_by_side():
     surface = grid([0, 0, 1, 1, 0, 0, 1, 1], ("A", "B"))
-    found = {side.name: side.vertices.tolist() for side in sides(surface.patches())}
-    assert found == {
+    result = {side.name: side.vertices.tolist() for side in sides(surface.patches())}
+    assert result == {
         "A.B": [2, 7, 12],
         "A.free": [12, 11, 10, 5, 0, 1, 2],
         "B.A": [12, 7, 2],

@@ -22,13 +22,13 @@ def test_weights_give_the_closest_place_of_a_triangle():
     for _ in range(10):
         corner = rng.normal(size=(3, 3))
         points = rng.normal(size=(20, 3)) * 2
-        found = closest_places(points, corner, np.array([[0, 1, 2]]), reach=100.0)
+        result = closest_places(points, corner, np.array([[0, 1, 2]]), reach=100.0)
         brute = np.linalg.norm(points[:, None] - share @ corner, axis=2).min(axis=1)
-        assert (found.distance <= brute + 1e-12).all()
-        np.testing.assert_allclose(found.distance, brute, rtol=0.02, atol=0.02)
-        place = found.weights @ corner
-        np.testing.assert_allclose(points - place, found.offset, atol=1e-12)
-        assert (found.weights >= -1e-12).all()
+        assert (result.distance <= brute + 1e-12).all()
+        np.testing.assert_allclose(result.distance, brute, rtol=0.02, atol=0.02)
+        place = result.weights @ corner
+        np.testing.assert_allclose(points - place, result.offset, atol=1e-12)
+        assert (result.weights >= -1e-12).all()
 
 
 @settings(max_examples=20, deadline=None)
@@ -39,10 +39,10 @@ def test_every_face_was_worth_trying(seed, reach):
     vertices = rng.normal(size=(60, 3)) * 0.05
     faces = np.array([rng.choice(60, 3, replace=False) for _ in range(90)])
     points = rng.normal(size=(40, 3)) * 0.1
-    found = closest_places(points, vertices, faces, reach=reach)
+    result = closest_places(points, vertices, faces, reach=reach)
     each = [closest_places(points, vertices, f[None], reach=10.0).distance for f in faces]
     exact = np.min(each, axis=0)
-    np.testing.assert_allclose(found.distance, np.where(exact <= reach, exact, np.inf), rtol=1e-12)
+    np.testing.assert_allclose(result.distance, np.where(exact <= reach, exact, np.inf), rtol=1e-12)
 
 
 def test_side_is_right_beside_edges_and_corners():
@@ -50,10 +50,10 @@ def test_side_is_right_beside_edges_and_corners():
     half = np.array([0.1, 0.06, 0.04])
     vertices, faces = block(-half, half)
     points = np.random.default_rng(1).uniform(-1.6, 1.6, (3000, 3)) * half
-    found = closest_places(points, vertices, faces, reach=1.0)
-    normal, on_rim = pseudonormals(vertices, faces, found)
+    result = closest_places(points, vertices, faces, reach=1.0)
+    normal, on_rim = pseudonormals(vertices, faces, result)
     inside = (np.abs(points) < half).all(axis=1)
-    signed = np.einsum("kd,kd->k", found.offset, normal)
+    signed = np.einsum("kd,kd->k", result.offset, normal)
     assert ((signed < 0) == inside).all()
     assert not on_rim.any()
     np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0)
@@ -63,8 +63,8 @@ def test_rim_of_an_open_surface_is_known():
     vertices, faces = sphere(0.1, 3)
     upper = faces[vertices[faces].mean(axis=1)[:, 2] > 0]
     points = np.array([[0.0, 0.0, 0.12], [0.15, 0.0, -0.02], [0.0, -0.11, -0.03]])
-    found = closest_places(points, vertices, upper, reach=0.2)
-    assert pseudonormals(vertices, upper, found)[1].tolist() == [False, True, True]
+    result = closest_places(points, vertices, upper, reach=0.2)
+    assert pseudonormals(vertices, upper, result)[1].tolist() == [False, True, True]
 
 
 def test_segments_and_borders():

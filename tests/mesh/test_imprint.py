@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from seatlook import mesh
 from seatlook.errors import InputError
 from seatlook.mesh.imprint import FLAT, SAME, imprint
-from seatlook.mesh.line_ends import laid_on
+from seatlook.mesh.line_ends import lay_on
 from support.meshes import KINDS, rectangle
 
 LENGTH, WIDTH, H = 0.4, 0.3, 0.03
@@ -85,7 +85,7 @@ def test_a_line_round_a_cylinder_is_as_long_as_it_should_be():
     vertices = np.column_stack([radius * np.sin(turn), flat[:, 1], radius * np.cos(turn)])
     s = np.linspace(-angle, angle, 9)
     helix = np.column_stack([radius * np.sin(s), 0.15 + 0.05 * s, radius * np.cos(s)])
-    helix = laid_on(vertices, faces, {"A": helix}, tolerance=0.002)["A"]
+    helix = lay_on(vertices, faces, {"A": helix}, tolerance=0.002)["A"]
     drawn = imprint(vertices, faces, {"A": helix})
     exact = 2 * angle * np.hypot(radius, 0.05)
     assert length_of(drawn, "A") == pytest.approx(exact, rel=2e-3)  # the mesh: chords of arcs
@@ -128,7 +128,7 @@ def test_ends_are_joined_within_the_tolerance():
         "C": points((0.1, 0.2), (0.1985, 0.2), (0.1, 0.25), (0.1, 0.2)),
         "D": points((0.1985, 0.1985), (0.3, 0.2), (LENGTH, 0.2)),
     }
-    laid = laid_on(vertices, faces, lines, tolerance=0.002)
+    laid = lay_on(vertices, faces, lines, tolerance=0.002)
     assert laid["A"].tolist() == points((0, 0.1), (0.2, 0.1), (LENGTH, 0.1)).tolist()
     assert laid["B"][0] == pytest.approx([0.2, 0.1, 0])
     assert len(laid["C"]) in (4, 5)
@@ -140,13 +140,13 @@ def test_every_line_that_lies_off_or_ends_nowhere_is_named():
     off = points((0, 0.1), (0.2, 0.1), (LENGTH, 0.1))
     off[1, 2] = 0.0031
     with pytest.raises(InputError) as caught:
-        laid_on(vertices, faces, {"A": off, "B": off[::-1]}, tolerance=0.002)
+        lay_on(vertices, faces, {"A": off, "B": off[::-1]}, tolerance=0.002)
     assert [str(p) for p in caught.value.problems] == [
         f"curve.{name}.points_mm[1]: got 3.10 mm, expected within 2 mm of the surface"
         for name in "AB"
     ]
     short = points((0, 0.1), (0.2, 0.1))
     with pytest.raises(InputError, match=r"curve\.A\.points_mm\[1\]: got an end 100\.0 mm away"):
-        laid_on(vertices, faces, {"A": short, "B": points((0, 0.2), (LENGTH, 0.2))}, tolerance=2e-3)
+        lay_on(vertices, faces, {"A": short, "B": points((0, 0.2), (LENGTH, 0.2))}, tolerance=2e-3)
     with pytest.raises(InputError, match=r"expected an end within 2 mm of the border or another"):
-        laid_on(vertices, faces, {"A": short}, tolerance=0.002)
+        lay_on(vertices, faces, {"A": short}, tolerance=0.002)

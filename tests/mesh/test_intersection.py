@@ -46,8 +46,8 @@ def test_neighbours_count_only_away_from_what_they_share():
     fan = np.concatenate([FLOOR, [[0.3, 0.3, -0.5], [0.4, 0.3, 0.5], [-1, 0, 1], [0, -1, 1]]])
     # The side opposite the shared corner goes through the floor; it does not; a folded edge.
     for second, expected in (([0, 3, 4], 1), ([0, 5, 6], 0), ([1, 0, 4], 0)):
-        found = intersecting_pairs(fan, np.array([[0, 1, 2], second]))
-        assert len(found) == expected, second
+        result = intersecting_pairs(fan, np.array([[0, 1, 2], second]))
+        assert len(result) == expected, second
 
 
 def test_sewn_corners_are_one_place():
@@ -66,7 +66,7 @@ def test_folded_sheet_finds_every_pair_a_plain_count_finds():
     radius = 0.03 + 0.02 * np.cos(X[:, 0] / 0.02)
     angle = X[:, 0] / 0.03
     points = np.column_stack([radius * np.sin(angle), X[:, 1], radius * np.cos(angle)])
-    found = intersecting_pairs(points, faces)
+    result = intersecting_pairs(points, faces)
     centre = points[faces].mean(axis=1)
     expected = [
         (i, j)
@@ -76,9 +76,9 @@ def test_folded_sheet_finds_every_pair_a_plain_count_finds():
         and not set(faces[i]) & set(faces[j])
         and (pierces(*points[faces[[i, j]]]) or pierces(*points[faces[[j, i]]]))
     ]
-    shared = np.array([len(set(faces[i]) & set(faces[j])) for i, j in found])
+    shared = np.array([len(set(faces[i]) & set(faces[j])) for i, j in result])
     assert len(expected) > 20
-    assert [tuple(p) for p in found[shared == 0]] == expected
+    assert [tuple(p) for p in result[shared == 0]] == expected
 
 
 def pierces(triangle, other):
@@ -118,5 +118,5 @@ def test_sheets_that_nothing_crosses():
     # Two layers that lie on each other, and a millimetre apart.
     for gap, crossing in ((0.0, True), (1e-3, False)):
         both = np.concatenate([flat, flat + np.array([0.0, 0.0, gap])])
-        found = intersecting_pairs(both, np.concatenate([faces, faces + len(X)]))
-        assert bool(len(found)) == crossing
+        result = intersecting_pairs(both, np.concatenate([faces, faces + len(X)]))
+        assert bool(len(result)) == crossing

@@ -60,8 +60,8 @@ def test_boundary_loops_of_a_ring_and_of_a_closed_surface():
 def test_boundary_sides_are_those_that_occur_once(triangles):
     faces = np.array(triangles, dtype=np.int64).reshape(-1, 3)
     sides = [frozenset((f[k], f[(k + 1) % 3])) for f in faces.tolist() for k in range(3)]
-    alone = [k for k, side in enumerate(sides) if sides.count(side) == 1]
-    assert mesh.boundary_sides(faces).tolist() == alone
+    single = [k for k, side in enumerate(sides) if sides.count(side) == 1]
+    assert mesh.boundary_sides(faces).tolist() == single
 
 
 def test_boundary_loops_refuse_a_pinched_surface():
@@ -71,8 +71,8 @@ def test_boundary_loops_refuse_a_pinched_surface():
 
 def test_angles_of_a_3_4_5_triangle_in_space():
     points = np.array([[0.0, 0, 1], [0, 4, 1], [3, 0, 1]])
-    found = mesh.angles(points, np.array([[0, 1, 2]]))
-    assert np.allclose(found, [[np.pi / 2, np.arctan2(3, 4), np.arctan2(4, 3)]])
+    result = mesh.angles(points, np.array([[0, 1, 2]]))
+    assert np.allclose(result, [[np.pi / 2, np.arctan2(3, 4), np.arctan2(4, 3)]])
 
 
 def test_normals_of_a_sphere():
@@ -99,11 +99,11 @@ def test_hexagonal_bias_of_known_meshes():
 def test_resample_steps_are_equal_along_the_line(spacing):
     t = np.linspace(0, np.pi / 2, 2000)
     line = 0.1 * np.column_stack([np.cos(t), np.sin(t), 0 * t])
-    found = mesh.resample(line, spacing)
-    steps = np.linalg.norm(np.diff(found, axis=0), axis=1)
+    result = mesh.resample(line, spacing)
+    steps = np.linalg.norm(np.diff(result, axis=0), axis=1)
     assert np.ptp(steps) < 1e-6
     assert len(steps) == max(1, round(0.1 * np.pi / 2 / spacing))
-    assert (found[[0, -1]] == line[[0, -1]]).all()
+    assert (result[[0, -1]] == line[[0, -1]]).all()
 
 
 def test_resample_refuses_a_point():

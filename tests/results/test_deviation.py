@@ -86,7 +86,7 @@ def test_inside_and_outside_of_a_sphere():
         assert (off <= r - 0.1 + 1e-4).all()
 
 
-def test_beside_the_rim_and_far_away_nothing_is_said():
+def test_beside_the_rim_and_far_away_the_deviation_is_nan():
     s = finished(lambda x, y: 0.002 + 0 * x)
     off = deviation(s, level(size=0.08))
     middle = s.positions[s.cover.faces].mean(axis=1)

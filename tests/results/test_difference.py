@@ -25,25 +25,25 @@ def test_on_the_same_mesh_it_is_exact():
 @pytest.mark.parametrize("kind", ["uns", "cross"])
 def test_on_another_mesh_it_is_what_lies_on_the_same_place(kind):
     one, other = shaped(wave(0.0, 0.06)), shaped(wave(0.0, 0.06), kind=kind, h=0.004)
-    found = difference(one, field(one, 3.0), other, field(other, 1.0))
+    result = difference(one, field(one, 3.0), other, field(other, 1.0))
     # The nearest vertex is at most 0.7 h away, on a slope of 1 per 120 mm.
-    np.testing.assert_allclose(found, field(one, 2.0), atol=0.7 * 0.004 / SIZE + 1e-9)
+    np.testing.assert_allclose(result, field(one, 2.0), atol=0.7 * 0.004 / SIZE + 1e-9)
 
 
 def test_a_panel_that_is_not_there_has_none():
     two, one = shaped(wave(0.0, 0.06), panels=2), shaped(wave(0.0, 0.06), kind="cross")
-    found = difference(two, field(two, 1.0), one, field(one, 1.0))
-    assert np.isnan(found[two.cover.panel == 1]).all()
-    assert np.isfinite(found[two.cover.panel == 0]).all()
+    result = difference(two, field(two, 1.0), one, field(one, 1.0))
+    assert np.isnan(result[two.cover.panel == 1]).all()
+    assert np.isfinite(result[two.cover.panel == 0]).all()
 
 
 def test_a_panel_that_lies_elsewhere_on_the_pattern_is_laid_on_it():
     one, other = shaped(wave(0.0, 0.06)), shaped(wave(0.0, 0.06), kind="cross")
     moved = dataclasses.replace(other.cover, rest=other.cover.rest + np.array([0.4, 0.1]))
-    found = difference(
+    result = difference(
         one, field(one, 1.0), dataclasses.replace(other, cover=moved), field(other, 1.0)
     )
-    np.testing.assert_allclose(found, 0.0, atol=0.7 * 0.005 / SIZE + 1e-9)
+    np.testing.assert_allclose(result, 0.0, atol=0.7 * 0.005 / SIZE + 1e-9)
 
 
 def test_zones_are_compared_by_their_means():

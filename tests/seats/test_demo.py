@@ -33,17 +33,17 @@ def test_size_and_place(surface):
 
 def test_panels_conform_along_their_seams(surface):
     """Every seam is one chain of shared vertices: each side has a partner run backwards."""
-    found = sides(surface.patches())
-    by_name = {side.name: side for side in found}
+    result = sides(surface.patches())
+    by_name = {side.name: side for side in result}
     pairs = set()
-    for side in found:
+    for side in result:
         if side.neighbour == "free":
             continue
         other = by_name[f"{side.neighbour}.{side.panel}"]
         assert (other.vertices[::-1] == side.vertices).all()
         pairs.add(tuple(sorted((side.panel, side.neighbour))))
     assert pairs == SEAMS
-    free = {side.panel for side in found if side.neighbour == "free"}
+    free = {side.panel for side in result if side.neighbour == "free"}
     assert free == {"FRONT", "SIDE_L", "SIDE_R", "REAR"}
 
 
@@ -51,8 +51,8 @@ def test_front_is_sewn_to_three_panels_in_outline_order(surface):
     order = [s.neighbour for s in sides(surface.patches()) if s.panel == "FRONT"]
     at = order.index("free")
     # The face is looked at from the front, counter-clockwise: along the bottom towards +x, up.
-    wanted = ["free", "SIDE_L", "BOLSTER_L", "INSERT", "BOLSTER_R", "SIDE_R"]
-    assert order[at:] + order[:at] == wanted
+    expected = ["free", "SIDE_L", "BOLSTER_L", "INSERT", "BOLSTER_R", "SIDE_R"]
+    assert order[at:] + order[:at] == expected
 
 
 def test_left_is_the_occupants_left_and_front_is_minus_y(surface):
@@ -106,7 +106,7 @@ def test_surface_has_no_crease_except_in_the_trenches(cushion):
     assert np.degrees(np.arccos(left @ right)) > 60
 
 
-def test_trench_lips_are_convex_and_as_deep_as_said(cushion):
+def test_trench_lips_are_convex_and_as_deep_as_specified(cushion):
     """Across the trench the section falls and rises again with convex lips only."""
     x = np.linspace(0.0, 0.20, 2001)
     z = cushion.top(x, np.zeros(2001))
@@ -159,10 +159,10 @@ def test_foam_lies_half_a_thickness_below_the_cover(surface, foam, solid_angle, 
     up = mesh.face_normals(surface.vertices, surface.faces)
     middle = surface.vertices[surface.faces].mean(axis=1)
     away = np.abs(np.abs(middle[:, 0]) - cushion.trench_x(middle[:, 1])) > 0.012
-    for depth, wanted in ((0.0004, 0.0), (0.0008, 1.0)):
+    for depth, expected in ((0.0004, 0.0), (0.0008, 1.0)):
         points = (middle - depth * up)[away][::149]
-        found = solid_angle(points, foam.vertices, foam.faces)
-        assert found == pytest.approx(np.full(len(points), wanted), abs=1e-9)
+        result = solid_angle(points, foam.vertices, foam.faces)
+        assert result == pytest.approx(np.full(len(points), expected), abs=1e-9)
 
 
 def test_foam_leaves_room_under_the_wires(foam, solid_angle, cushion):
@@ -170,9 +170,9 @@ def test_foam_leaves_room_under_the_wires(foam, solid_angle, cushion):
     for wire in ("trench_left", "trench_right"):
         line = foam.curves[wire]
         deepest = line[np.abs(line[:, 1]).argmin()]
-        for below, wanted in ((0.8 * cushion.slot, 0.0), (1.4 * cushion.slot, 1.0)):
+        for below, expected in ((0.8 * cushion.slot, 0.0), (1.4 * cushion.slot, 1.0)):
             point = deepest - [0, 0, below]
-            assert solid_angle(point[None], foam.vertices, foam.faces) == pytest.approx(wanted)
+            assert solid_angle(point[None], foam.vertices, foam.faces) == pytest.approx(expected)
         ends = line[[1, -2]] - [0, 0, 0.0015]
         assert solid_angle(ends, foam.vertices, foam.faces) == pytest.approx(1.0)
 

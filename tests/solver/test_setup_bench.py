@@ -17,18 +17,18 @@ def test_setup(edges, capsys):
     ElasticSheet(X, T, panel, fabric)
     begin = time.process_time()
     sheet = ElasticSheet(X, T, panel, fabric)
-    spent = [time.process_time() - begin]
+    seconds = [time.process_time() - begin]
     x = np.column_stack([X, 0.01 * np.sin(9 * X[:, 0])])
     gradient = np.zeros_like(x)
     for energy in sheet.energies:
         begin = time.process_time()
         for _ in range(10):
             energy.value(x, gradient)
-        spent.append((time.process_time() - begin) / 10)
+        seconds.append((time.process_time() - begin) / 10)
     assert np.isfinite(gradient).all()
     with capsys.disabled():
         print(
-            f"\n    {len(X)} vertices: set-up {spent[0]:.2f} s, "
-            f"membrane {1e3 * spent[1]:.1f} ms, bending {1e3 * spent[2]:.1f} ms",
+            f"\n    {len(X)} vertices: set-up {seconds[0]:.2f} s, "
+            f"membrane {1e3 * seconds[1]:.1f} ms, bending {1e3 * seconds[2]:.1f} ms",
             end="",
         )

@@ -67,12 +67,12 @@ def test_history_and_figures_are_complete():
     assert s.figures["wavelength_over_h"] == pytest.approx(s.figures["wavelength"] / 0.04)
 
 
-def test_progress_is_told_of_every_step():
-    seen = []
-    s = solve(laid(h=0.04), progress=lambda **k: seen.append(k))
-    assert len(seen) == s.figures["steps"]
-    assert {"stage", "step", "steps", "energy", "residual", "gap"} <= set(seen[0])
-    assert seen[-1]["residual"] == s.figures["residual"]
+def test_progress_is_called_after_every_step():
+    calls = []
+    s = solve(laid(h=0.04), progress=lambda **k: calls.append(k))
+    assert len(calls) == s.figures["steps"]
+    assert {"stage", "step", "steps", "energy", "residual", "gap"} <= set(calls[0])
+    assert calls[-1]["residual"] == s.figures["residual"]
 
 
 def test_same_input_same_bits():
@@ -230,9 +230,9 @@ def test_going_on_from_a_snapshot_gives_the_same_bits():
 
 
 def test_going_on_from_rest_changes_nothing():
-    done = solve(laid(h=0.03), strict=True)
-    again = solve(laid(h=0.03), start=done, strict=True)
-    np.testing.assert_allclose(again.positions, done.positions, atol=1e-6)
+    rested = solve(laid(h=0.03), strict=True)
+    again = solve(laid(h=0.03), start=rested, strict=True)
+    np.testing.assert_allclose(again.positions, rested.positions, atol=1e-6)
 
 
 def test_start_of_other_panels_is_refused():
@@ -259,7 +259,7 @@ def test_without_foam_a_strip_hangs_between_its_frames():
     assert "contact_force" not in s.figures
 
 
-def test_what_is_not_converged_says_so(monkeypatch):
+def test_a_result_that_is_not_converged_gives_the_reason(monkeypatch):
     driver = importlib.import_module("seatlook.solver.solve")
     monkeypatch.setattr(driver, "_ROUNDS", 1)
     monkeypatch.setattr(driver, "_REST_ITERATIONS", 2)
@@ -271,7 +271,7 @@ def test_what_is_not_converged_says_so(monkeypatch):
     assert caught.value.solution.positions.shape == s.positions.shape
 
 
-def test_pressure_beyond_the_foam_curve_is_told():
+def test_pressure_beyond_the_foam_curve_is_a_reason():
     c = laid(density=300.0)
     short = {"strain": np.array([0.0, 0.02, 0.05]), "stress": np.array([0.0, 500.0, 1000.0])}
     s = solve(dataclasses.replace(c, foam=flat_foam(**short)))

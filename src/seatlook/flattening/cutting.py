@@ -13,7 +13,7 @@ from seatlook import mesh
 from seatlook.errors import InputError, Problem
 from seatlook.flattening.surface import DesignSurface, sides
 from seatlook.mesh.imprint import Imprinted, imprint
-from seatlook.mesh.line_ends import laid_on
+from seatlook.mesh.line_ends import lay_on
 from seatlook.model import FloatArray, IntArray
 
 LINE_TOLERANCE = 0.002  # [m] between a seam line and the surface, the border, another line
@@ -43,7 +43,7 @@ def cut_along(surface: DesignSurface, lines: Mapping[str, FloatArray]) -> Design
         A line lies off the surface, ends on it without parting it, or leaves it; a panel has
         a hole, one neighbour all round, or less than 1 cm2.
     """
-    laid = laid_on(surface.vertices, surface.faces, lines, tolerance=LINE_TOLERANCE)
+    laid = lay_on(surface.vertices, surface.faces, lines, tolerance=LINE_TOLERANCE)
     drawing = imprint(surface.vertices, surface.faces, laid)
     label = _parts(drawing)
     panel, names = _named(drawing, label, surface)

@@ -11,7 +11,7 @@ import numpy as np
 from seatlook import mesh
 from seatlook.errors import InputError, Problem, SeatlookError, did_you_mean
 from seatlook.flattening.fabric_sheet import fabric_energy
-from seatlook.flattening.lengths import agreed_ratios, relaxed
+from seatlook.flattening.lengths import agreed_ratios, relax_panel
 from seatlook.flattening.pattern import pair, sewing_pattern
 from seatlook.flattening.placement import place
 from seatlook.flattening.relax import flatten_patch, strains_by_grain, stretches
@@ -141,7 +141,7 @@ def flatten(
     for patch in patches:
         own = [s for s in borders if s.panel == patch.name and s.neighbour != FREE]
         fabric = fabrics.get(patch.name)
-        x = relaxed(patch, own, ratio, shapes[patch.name], ease, fabric=fabric)
+        x = relax_panel(patch, own, ratio, shapes[patch.name], ease, fabric=fabric)
         # A panel of a fabric has kept the direction in which its grain was laid.
         x = (_grain_up(patch, x) if fabric is None else x) * (1 - tension)
         flat[patch.name] = x * [1 - short.get(patch.name, 0.0), 1.0]

@@ -45,7 +45,7 @@ def agreed_ratios(
     return agreed
 
 
-def relaxed(
+def relax_panel(
     patch: Patch,
     own: Sequence[Side],
     ratio: Mapping[str, FloatArray],

@@ -15,7 +15,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 
-def laid_on(
+def lay_on(
     vertices: FloatArray,
     faces: IntArray,
     lines: Mapping[str, FloatArray],

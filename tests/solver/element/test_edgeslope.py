@@ -60,8 +60,8 @@ def test_error_of_a_wave_falls_with_the_square_of_h():
         edges = edges_of(X, T)
         mid = X[edges.ends].mean(axis=1)
         slope = 3 * np.cos(3 * mid[:, 0]) * edges.normal[:, 0]
-        got = recovered(slope_rows(X, T, edges), np.sin(3 * X[:, 0]))
-        errors.append(np.sqrt(((got - slope) ** 2).mean()))
+        result = recovered(slope_rows(X, T, edges), np.sin(3 * X[:, 0]))
+        errors.append(np.sqrt(((result - slope) ** 2).mean()))
     rate = np.polyfit(np.log([0.1, 0.05, 0.025]), np.log(errors), 1)[0]
     assert rate > 1.9
     # (q h)^2 / 24 of the slope inside, more where the fit is one-sided at the rim.
@@ -71,15 +71,15 @@ def test_error_of_a_wave_falls_with_the_square_of_h():
 def test_strip_of_one_element_still_reproduces_planes():
     X, T = meshes.rectangle("right", 1.0, 0.1, 0.1)
     edges = edges_of(X, T)
-    got = recovered(slope_rows(X, T, edges), 2 * X[:, 0] - 3 * X[:, 1])
-    np.testing.assert_allclose(got, edges.normal @ [2.0, -3.0], atol=1e-12)
+    result = recovered(slope_rows(X, T, edges), 2 * X[:, 0] - 3 * X[:, 1])
+    np.testing.assert_allclose(result, edges.normal @ [2.0, -3.0], atol=1e-12)
 
 
 def test_single_triangle():
     X = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 0.8]])
     edges = edges_of(X, np.array([[0, 1, 2]]))
-    got = recovered(slope_rows(X, np.array([[0, 1, 2]]), edges), X @ [1.0, 2.0])
-    np.testing.assert_allclose(got, edges.normal @ [1.0, 2.0], atol=1e-12)
+    result = recovered(slope_rows(X, np.array([[0, 1, 2]]), edges), X @ [1.0, 2.0])
+    np.testing.assert_allclose(result, edges.normal @ [1.0, 2.0], atol=1e-12)
 
 
 def test_edge_with_three_faces_is_refused():

@@ -67,19 +67,19 @@ def sewn_sheet(h, h_far, stiffness, kind="uns", *, clamped=False):
 
 
 def merged(rest, n):
-    """(all, kept) matrix: far rim vertices follow the near rim, which may have other vertices."""
+    """(all, free) matrix: far rim vertices follow the near rim, which may have other vertices."""
     a, b = rims(rest, n)
-    kept = np.setdiff1d(np.arange(len(rest)), b)
+    free = np.setdiff1d(np.arange(len(rest)), b)
     place = np.full(len(rest), -1)
-    place[kept] = np.arange(len(kept))
-    rows, columns, values = [*kept], [*place[kept]], [1.0] * len(kept)
+    place[free] = np.arange(len(free))
+    rows, columns, values = [*free], [*place[free]], [1.0] * len(free)
     for v in b:
         k = np.clip(np.searchsorted(rest[a, 1], rest[v, 1]) - 1, 0, len(a) - 2)
         w = (rest[v, 1] - rest[a[k], 1]) / (rest[a[k + 1], 1] - rest[a[k], 1])
         rows += [v, v]
         columns += [place[a[k]], place[a[k + 1]]]
         values += [1.0 - w, w]
-    return csr_array((values, (rows, columns)), shape=(len(rest), len(kept)))
+    return csr_array((values, (rows, columns)), shape=(len(rest), len(free)))
 
 
 def tip(h, h_far, stiffness):

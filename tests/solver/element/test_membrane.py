@@ -124,14 +124,14 @@ def test_kernel_equals_its_twin():
     x, _ = crumpled(X)
     m = s.membrane
     edges = s.edges
-    got, bow = np.empty(len(edges.ends)), np.empty((len(edges.ends), 3))
-    kernels.edge_strains(x, edges.ends, edges.length, *m._rows, m._bow_offset, bow, got)
+    result, bow = np.empty(len(edges.ends)), np.empty((len(edges.ends), 3))
+    kernels.edge_strains(x, edges.ends, edges.length, *m._rows, m._bow_offset, bow, result)
     dense = np.zeros((len(edges.ends), len(x)))
     start, nodes, weights = m._rows
     for e in range(len(edges.ends)):
         dense[e, nodes[start[e] : start[e + 1]]] = weights[start[e] : start[e + 1]]
     twin = naive.edge_strains(x, edges.ends, edges.length, dense, m._bow_offset)
-    np.testing.assert_allclose(got, twin, atol=1e-14)
+    np.testing.assert_allclose(result, twin, atol=1e-14)
 
 
 @pytest.mark.parametrize("e", [-0.1, -2e-3, -1e-3, 0.0, 0.01, 0.02, 0.03, 0.05, 0.2])

@@ -162,8 +162,8 @@ def test_strip_returns_along_its_unloading_curve(axis):
         )
         force = state.reactions[high, axis].sum() / np.sqrt(1 + 2 * strain)
         back = unloading.tension(max(strain - peak + start, 0.0))
-        wanted = loading.tension(strain) if strain >= peak else back
-        assert force == pytest.approx(float(wanted), rel=5e-3)
+        expected = loading.tension(strain) if strain >= peak else back
+        assert force == pytest.approx(float(expected), rel=5e-3)
 
 
 def test_cover_remembers_over_a_restart():

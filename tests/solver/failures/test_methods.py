@@ -120,12 +120,12 @@ def test_flat_sheet_past_its_buckling_load_is_unstable_and_leaves():
     stayed = newton(Potential(body.energies, (), free), flat, tolerance=1e-8)
     assert stayed.downhill > 0
     for method in ("newton", "lbfgs", "explicit"):
-        left = solve_sheet(
+        buckled = solve_sheet(
             Sheet(X, T, fabric),
             start=flat,
             support=Support(fixed=ends),
             settings=SheetSettings(method=method),
             strict=True,
         )
-        assert left.kicks >= 1
-        assert abs(left.positions[:, 2]).max() > 0.05
+        assert buckled.kicks >= 1
+        assert abs(buckled.positions[:, 2]).max() > 0.05

@@ -54,15 +54,15 @@ def chain(n, ends=1.0):
 
 def run(energy, x, factor, *, tolerance=1e-9, iterations=500, **options):
     minimiser = Lbfgs(x.shape, **options)
-    seen = []
+    sizes = []
     descent = minimiser.minimise(
         Potential([energy]),
         x,
         factor,
-        stop=lambda g: bool(seen.append(np.abs(g).max()) or seen[-1] < tolerance),
+        stop=lambda g: bool(sizes.append(np.abs(g).max()) or sizes[-1] < tolerance),
         iterations=iterations,
     )
-    return descent, seen
+    return descent, sizes
 
 
 @given(n=st.integers(2, 40), seed=st.integers(0, 10_000))
@@ -96,10 +96,10 @@ def test_finds_the_end_of_the_banana_valley():
 
 def test_accepted_values_never_rise_and_no_vertex_passes_the_cap():
     class Watched(Lbfgs):
-        def _remember(self, x, kept):
+        def _remember(self, x, pairs):
             steps.append(np.linalg.norm(self._trial - x, axis=1).max())
             values.append(energy.value(self._trial, np.zeros_like(x)))
-            return super()._remember(x, kept)
+            return super()._remember(x, pairs)
 
     energy, steps, values = Rosenbrock(), [], []
     x = np.tile([-1.2, 1.0, 0.3], (2, 1))
@@ -117,7 +117,7 @@ def test_stops_at_the_limit_of_iterations():
     assert descent.evaluations >= 4
 
 
-def test_stall_is_told():
+def test_a_stall_is_reported():
     class Liar(Quadratic):
         def value(self, x, gradient):
             value = super().value(x, gradient)
@@ -145,8 +145,8 @@ def test_values_that_rounding_swallows_do_not_hold_up_the_search(wrong):
 
     x, load = np.zeros((40, 3)), np.random.default_rng(3).normal(size=(40, 3))
     guess = Factor(csc_array(4.0 * identity(40)))
-    descent, seen = run(Rounded(chain(40, ends=300.0), load), x, guess, step_cap=1e9)
-    assert seen[-1] < 1e-9
+    descent, sizes = run(Rounded(chain(40, ends=300.0), load), x, guess, step_cap=1e9)
+    assert sizes[-1] < 1e-9
     assert not descent.stalled
     assert descent.evaluations <= 65
 
@@ -217,14 +217,14 @@ def test_two_loops_equal_the_dense_update():
     A = np.eye(3 * n) * 3 + 0.2 * np.ones((3 * n, 3 * n))
     s, y = np.zeros((memory, n, 3)), np.zeros((memory, n, 3))
     rho, alpha = np.zeros(memory), np.zeros(memory)
-    kept = []
+    count = []
     for k in range(pairs):
         d = rng.normal(size=(n, 3))
         s[k % memory], y[k % memory] = d, (A @ d.ravel()).reshape(n, 3)
         rho[k % memory] = 1 / np.sum(s[k % memory] * y[k % memory])
-        kept.append((d.ravel(), A @ d.ravel()))
+        count.append((d.ravel(), A @ d.ravel()))
     H = np.eye(3 * n)
-    for d, g in kept[-memory:]:
+    for d, g in count[-memory:]:
         r = 1 / (d @ g)
         V = np.eye(3 * n) - r * np.outer(g, d)
         H = V.T @ H @ V + r * np.outer(d, d)

@@ -65,7 +65,7 @@ def test_blocks_may_be_given_either_way_round(seed):
     np.testing.assert_array_equal(one.solve(right), two.solve(right))
 
 
-def test_indefinite_matrices_are_told_and_leave_no_trace():
+def test_indefinite_matrices_are_refused_and_leave_no_trace():
     X, rows, columns, blocks, full = problem(3)
     cholesky = Cholesky(Pattern(rows, columns, len(X), size=3))
     bad = blocks.copy()
@@ -109,8 +109,8 @@ def test_order_and_fronts_of_any_graph():
     n, clique = len(X), 40
     pairs = np.stack([rows, columns], axis=1)
     dense = 2 * n + np.stack(np.tril_indices(clique), axis=1)
-    alone = np.full((1, 2), 2 * n + clique)
-    pairs = np.concatenate([pairs, pairs + n, dense, alone])
+    single = np.full((1, 2), 2 * n + clique)
+    pairs = np.concatenate([pairs, pairs + n, dense, single])
     pattern = Pattern(*pairs.T.copy(), 2 * n + clique + 1)
     np.testing.assert_array_equal(np.sort(pattern.order), np.arange(2 * n + clique + 1))
     rank = np.argsort(pattern.order)

@@ -56,20 +56,20 @@ def test_potential_never_rises():
     x, potential = shortened(X, sheet, 0.03)
     rng = np.random.default_rng(1)
     x[:, 2] += np.where(potential.free[:, 2], 1e-3 * rng.standard_normal(len(x)), 0.0)
-    found = newton(potential, x, tolerance=1e-6)
-    assert found.residual <= 1e-6
-    assert len(found.energy) > 5
-    assert (np.diff(found.energy) <= 1e-11 * abs(found.energy[0])).all()
+    result = newton(potential, x, tolerance=1e-6)
+    assert result.residual <= 1e-6
+    assert len(result.energy) > 5
+    assert (np.diff(result.energy) <= 1e-11 * abs(result.energy[0])).all()
 
 
 def test_short_budget_is_not_called_converged():
     X, _, sheet = strip()
     x, potential = shortened(X, sheet, 0.03)
     x[:, 2] = 0.05 * np.sin(np.pi * X[:, 0])
-    found = newton(potential, x, max_iterations=1)
-    assert found.iterations == 1
-    assert found.residual > 1e-6
-    assert not found.stable
+    result = newton(potential, x, max_iterations=1)
+    assert result.iterations == 1
+    assert result.residual > 1e-6
+    assert not result.stable
 
 
 def test_same_input_gives_the_same_bits():

@@ -37,9 +37,9 @@ def test_positive_matrices_have_no_way_down(lift):
 def test_one_negative_eigenvalue_is_found(lift):
     matrix = chain(60, lift)
     guess = Factor(csc_array(diags_array(np.full(60, 2.0))))
-    found = downhill(Potential([Quadratic(matrix)]), np.zeros((60, 3)), guess, most=200)
-    assert found is not None
-    assert (found * (matrix @ found)).sum() < 0.0
+    result = downhill(Potential([Quadratic(matrix)]), np.zeros((60, 3)), guess, most=200)
+    assert result is not None
+    assert (result * (matrix @ result)).sum() < 0.0
 
 
 @pytest.mark.parametrize("method", ["lbfgs", "newton"])

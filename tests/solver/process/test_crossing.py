@@ -104,8 +104,8 @@ def test_corner_of_several_panels_is_one_place():
     ends = [vertices_as_points([v]) for v in (b, third)]
     more = model.Stitching(name="more", a=ends[0], b=ends[1], length=np.ones(1), stage="sew")
     pairs = sewn_vertices(dataclasses.replace(cover, stitchings=(seam, more)))
-    found = {tuple(p) for p in pairs}
-    assert {(a, b), (b, third), (a, third)} <= found
+    result = {tuple(p) for p in pairs}
+    assert {(a, b), (b, third), (a, third)} <= result
 
 
 @pytest.mark.parametrize(("angle", "outside"), [(150.0, False), (100.0, False), (40.0, True)])

@@ -17,15 +17,15 @@ def elastic(kind="uns", h=0.1, bend=1e-2):
 
 def nearest(X, sheet_, x, ties=None):
     ties = csc_array((len(X), len(X))) if ties is None else ties
-    found = NearestHessian(sheet_, np.pad(X, ((0, 0), (0, 1))), ties)
-    found.factor(x, csc_array(diags_array(np.ones(len(X)))), np.zeros((len(X), 3, 3)))
-    return found
+    result = NearestHessian(sheet_, np.pad(X, ((0, 0), (0, 1))), ties)
+    result.factor(x, csc_array(diags_array(np.ones(len(X)))), np.zeros((len(X), 3, 3)))
+    return result
 
 
-def inverse(found, n):
+def inverse(result, n):
     out, columns = np.empty((n, 3)), []
     for unit in np.eye(3 * n):
-        found.solve(unit.reshape(n, 3), out)
+        result.solve(unit.reshape(n, 3), out)
         columns.append(out.ravel().copy())
     return np.array(columns).T
 
@@ -59,9 +59,9 @@ def test_definite_however_crumpled_the_sheet():
     X, sheet_ = elastic()
     rng = np.random.default_rng(0)
     x = 0.7 * np.pad(X, ((0, 0), (0, 1))) + 0.05 * rng.standard_normal((len(X), 3))
-    found = nearest(X, sheet_, x)
+    result = nearest(X, sheet_, x)
     right, out = rng.standard_normal((len(X), 3)), np.empty((len(X), 3))
-    found.solve(right, out)
+    result.solve(right, out)
     assert (right * out).sum() > 0.0
 
 

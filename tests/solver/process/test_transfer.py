@@ -25,11 +25,11 @@ def test_quadratics_arrive_exactly_and_panels_stay_apart():
     above = np.zeros(len(coarse.rest))
     above[coarse.faces[coarse.panel == 1]] = 5.0
     values = np.column_stack([bent(coarse.rest), above])
-    found = transfer(coarse, values, fine)
-    np.testing.assert_allclose(found[:, :3], bent(fine.rest), atol=1e-12)
+    result = transfer(coarse, values, fine)
+    np.testing.assert_allclose(result[:, :3], bent(fine.rest), atol=1e-12)
     expected = np.zeros(len(fine.rest))
     expected[fine.faces[fine.panel == 1]] = 5.0
-    np.testing.assert_allclose(found[:, 3], expected, atol=1e-12)
+    np.testing.assert_allclose(result[:, 3], expected, atol=1e-12)
 
 
 def test_waves_arrive_to_third_order():
