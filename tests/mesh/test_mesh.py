@@ -87,6 +87,13 @@ def test_normals_of_a_sphere():
     assert outward.min() > 0
 
 
+def test_a_vertex_without_a_face_has_no_normal():
+    """Nodes of deleted shells stay in the list; nobody divides by their length."""
+    points = np.array([[0.0, 0, 1], [9, 9, 9], [0, 4, 1], [3, 0, 1]])
+    normals = mesh.vertex_normals(points, np.array([[0, 3, 2]]))
+    assert normals.tolist() == [[0, 0, 1], [0, 0, 0], [0, 0, 1], [0, 0, 1]]
+
+
 def test_hexagonal_bias_of_known_meshes():
     lattice = np.array([[0, 0], [1, 0], [0.5, np.sqrt(0.75)]])
     pairs = np.array([[0, 1], [1, 2], [2, 0]])

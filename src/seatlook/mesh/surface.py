@@ -105,12 +105,14 @@ def face_normals(points: FloatArray, faces: IntArray) -> FloatArray:
 def vertex_normals(points: FloatArray, faces: IntArray) -> FloatArray:
     """Return unit normals (n, 3), weighted by the angle of each face (Thürmer, Wüthrich 1998).
 
-    The angle weights make the result independent of how a smooth surface is triangulated.
+    The angle weights make the result independent of how a smooth surface is triangulated. A vertex
+    without a face has zeros.
     """
     weighted = face_normals(points, faces)[:, None] * angles(points, faces)[:, :, None]
     normals = np.zeros((len(points), 3))
     np.add.at(normals, faces, weighted)
-    return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.asarray(np.divide(normals, length, out=normals, where=length > 0))
 
 
 def angles(points: FloatArray, faces: IntArray) -> FloatArray:

@@ -31,9 +31,7 @@ def vertex_curvature(points: FloatArray, faces: IntArray) -> FloatArray:
         that the normals point to. A vertex without a face or with too few neighbours has zeros.
     """
     n = len(points)
-    used = np.bincount(faces.ravel(), minlength=n) > 0
-    normal = np.zeros((n, 3))
-    normal[used] = vertex_normals(points, faces)[used]
+    normal = vertex_normals(points, faces)
     first, second = _tangents(normal)
     a, b = _pairs(n, faces)
     step = points[b] - points[a]
