@@ -7,7 +7,16 @@ KINDS = ("uns", "right", "alt", "cross", "sliver")
 
 
 def rectangle(kind, length, width, h, *, seed=0):
-    """Rest vertices (n, 2) and faces (m, 3) of [0, length] x [0, width], edges about h long."""
+    """Rest vertices (n, 2) and faces (m, 3) of [0, length] x [0, width], edges about h long.
+
+    Also of kind "graded": edges from 0.55 h to 1.45 h, areas from 1 to 5.
+    """
+    if kind == "graded":
+        X, T = _jittered(length, width, h, seed)
+        x, y = (X / [length, width]).T
+        x = x + 0.45 / (4 * np.pi) * np.sin(4 * np.pi * x)
+        y = y + 0.3 * y * (1 - y)
+        return np.column_stack([length * x, width * y]), T
     nx, ny = max(1, round(length / h)), max(1, round(width / h))
     if kind == "uns":
         return _jittered(length, width, h, seed)
