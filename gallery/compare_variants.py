@@ -17,10 +17,9 @@ import os
 import tempfile
 from pathlib import Path
 
-import pyvista
-
-from seatlook import compare, io, pbr
+from seatlook import compare
 from seatlook.cli import run
+from seatlook.comparison.widgets import sliders
 
 folder = Path(os.environ.get("SEATLOOK_NOTEBOOK", tempfile.mkdtemp()))
 coarse = os.environ.get("SEATLOOK_ELEMENT_SIZE_MM", "10")
@@ -74,19 +73,14 @@ comparison.map("eased", "w2")
 # They need the extra `seatlook[notebook]`; everything above does not.
 
 # %%
-sliders = comparison.sliders()
-sliders
+sliders(comparison)
 
 # %% [markdown]
 # ## The index in three dimensions
 #
-# The exported surface carries strains and indices per element; PyVista turns it round.
+# Any index of the registry, turned by PyVista.
 
 # %%
-pbr.offscreen_backend()
-eased = comparison.variants["eased"]
-io.export_cover(eased.solution, eased.indices, folder / "eased.vtp")
-plotter = pyvista.Plotter(off_screen=True, window_size=(width, width * 9 // 16))
-plotter.add_mesh(pyvista.read(folder / "eased.vtp"), scalars="_W2", cmap="viridis")
-plotter.camera_position = [(0.9, -1.2, 0.9), (0.0, 0.0, 0.05), (0.0, 0.0, 1.0)]
-plotter.show(jupyter_backend="static")
+comparison.variants["eased"].view_3d("w2", size=(width, width * 9 // 16)).show(
+    jupyter_backend="static"
+)

@@ -18,7 +18,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from seatlook import assemble, load_scene, solve, surface_strains, wrinkle_indices, zone_table
+from seatlook import assemble, assess, load_scene, solve
 from seatlook.cli._demo import write_demo
 from seatlook.model import Scene
 from seatlook.results.gap import gap, zone_gaps
@@ -46,12 +46,6 @@ def measure(scene: Scene, name: str, size: float) -> list[dict[str, float | str]
     stuff = replace(stuff, stress=column * stuff.stress, young=short * stuff.young)
     foam = replace(scene.foam, material=stuff)
     solution = solve(assemble(replace(scene, foam=foam, seed=seed, element_size=1e-3 * size)))
-    indices = wrinkle_indices(
-        *surface_strains(solution),
-        solution.cover.thickness,
-        scene.c_threshold,
-        curvature=scene.curvature,
-    )
     gaps = {row.zone: 1e3 * row.mean for row in zone_gaps(solution, gap(solution))}
     return [
         {
@@ -59,11 +53,11 @@ def measure(scene: Scene, name: str, size: float) -> list[dict[str, float | str]
             "element_size_mm": size,
             "zone": row.zone,
             "area_cm2": 1e4 * row.area,
-            **{figure: getattr(row, figure) for figure in FIGURES[:-1]},
+            **{figure: row.values()[figure] for figure in FIGURES[:-1]},
             "gap_mean_mm": gaps[row.zone],
             "status": solution.status,
         }
-        for row in zone_table(solution, indices)
+        for row in assess(solution).zones
         if row.zone != "free edge"
     ]
 

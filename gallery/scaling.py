@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from seatlook import assemble, load_scene, solve, surface_strains, wrinkle_indices, zone_table
+from seatlook import assemble, assess, load_scene, solve
 from seatlook.cli._demo import write_demo
 
 TABLE = Path(__file__).parents[1] / "docs" / "charts" / "scaling.csv"
@@ -35,12 +35,9 @@ def measure(scene_file: Path, size: float, seed: int) -> dict[str, float | str]:
     cover = assemble(scene, element_size=1e-3 * size, seed=seed)
     solution = solve(cover)
     spent = time.process_time() - clock
-    indices = wrinkle_indices(
-        *surface_strains(solution), cover.thickness, scene.c_threshold, curvature=scene.curvature
-    )
-    rows = zone_table(solution, indices)
+    rows = assess(solution).zones
     area = np.array([row.area for row in rows])
-    w2 = float(np.array([row.w2_mean for row in rows]) @ area / area.sum())
+    w2 = float(np.array([row["w2_mean"] for row in rows]) @ area / area.sum())
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     values = (size, seed, len(cover.rest), f"{spent:.2f}", int(solution.figures["iterations"]),
               f"{w2:.5f}", round(memory), solution.status)  # fmt: skip

@@ -27,12 +27,12 @@ import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
+from seatlook import assess  # noqa: E402
 from seatlook.assembly import assemble  # noqa: E402
-from seatlook.chain import evaluation  # noqa: E402
 from seatlook.mesh.kinematics import principal_values  # noqa: E402
-from seatlook.model import Scene, Solution  # noqa: E402
+from seatlook.model import Solution  # noqa: E402
 from seatlook.solver import solve  # noqa: E402
-from seatlook.wrinkle import MEASURES, section, signed_ratio  # noqa: E402
+from seatlook.wrinkle import excess_strain, section, signed_ratio, w2_net  # noqa: E402
 from support import patch  # noqa: E402
 
 FloatArray = npt.NDArray[np.float64]
@@ -69,10 +69,11 @@ def axes_of_seam(solution: Solution, panel: int) -> tuple[FloatArray, FloatArray
     return middle, along, inward if inward @ (centre - middle) > 0 else -inward
 
 
-def measure(scene: Scene, solution: Solution, fault: str) -> dict[str, float]:
+def measure(solution: Solution, fault: str) -> dict[str, float]:
     """Means over the faulty panel: in the seam band, or where the test of a short panel looks."""
     cover, panel = solution.cover, 0 if fault == "ease" else 1
-    indices = evaluation.wrinkle_map(scene, solution)
+    assessment = assess(solution)
+    indices = assessment.indices
     major, minor = principal_values(solution.strain_mid)
     zone = np.array(cover.zone_names)[cover.zone]
     band = zone == "seam LEFT-RIGHT"
@@ -81,7 +82,6 @@ def measure(scene: Scene, solution: Solution, fault: str) -> dict[str, float]:
         stretched = np.maximum(np.abs(major), np.abs(minor)) > 1e-3
         chosen = (cover.panel == panel) & (zone != "free edge") & (indices.w2 > 0.1) & stretched
     _, along, across = axes_of_seam(solution, panel)
-    looked = evaluation.surface(scene, solution, indices)
     signed = signed_ratio(solution.strain_mid)
 
     def mean(values: FloatArray, weight: FloatArray = cover.rest_area) -> float:
@@ -99,8 +99,8 @@ def measure(scene: Scene, solution: Solution, fault: str) -> dict[str, float]:
             np.average(indices.w_compression[band], weights=cover.rest_area[band])
         ),
         "share": mean(indices.r_stretch, weight),
-        "w2_net": mean(MEASURES["w2_net"](looked)),
-        "excess_strain": mean(MEASURES["excess_strain"](looked)),
+        "w2_net": mean(w2_net(assessment.surface)),
+        "excess_strain": mean(excess_strain(assessment.surface)),
         "signed_share": mean(signed, weight),
     }
 
@@ -150,7 +150,7 @@ def run(case: str, amount: float, seed: int) -> None:
     scene = patch.scene(**{**change, fault: amount})
     solution = solve(assemble(scene, seed=seed))
     head: dict[str, float | str] = {"case": case, "amount": amount, "seed": seed}
-    figures = {name: f"{value:.6g}" for name, value in measure(scene, solution, fault).items()}
+    figures = {name: f"{value:.6g}" for name, value in measure(solution, fault).items()}
     keep(TABLE, COLUMNS, [{**head, **figures, "status": solution.status}])
     if seed == 0:
         rows = [{"case": case, "amount": amount, "along_mm": round(1e3 * s, 2),

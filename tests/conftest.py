@@ -22,7 +22,7 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.fixture(scope="session")
 def demo_scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write the demo's files, spoiled, on a coarse mesh; return its scene file."""
-    from seatlook.cli._demo import write_demo
+    from seatlook.seats import write_demo
 
     folder = tmp_path_factory.mktemp("demo")
     write_demo(

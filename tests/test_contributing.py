@@ -6,6 +6,7 @@ the running program, since a copy would compile them anew.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -45,7 +46,7 @@ TABLE = re.findall(r"^\| ([a-z ]+) \| (.*) \| (.*) \|$", CONTRIBUTING, re.M)[1:]
 def test_every_recipe_has_a_test_and_every_test_a_recipe():
     tested = {name.removeprefix("test_recipe_") for name in globals() if "test_recipe" in name}
     of_table = {name.replace(" ", "_") for name, _, _ in TABLE}
-    assert of_table - {"wrinkle_index", "wrinkle_measure"} == tested
+    assert of_table == tested
 
 
 def test_the_order_of_the_rooms_is_that_of_the_contract():
@@ -257,8 +258,9 @@ def test_recipe_reader_of_foams(clone):
 def test_recipe_export(clone):
     clone.write(
         "src/seatlook/io/export/count.py",
-        "def write_count(solution, indices, path):\n"
-        '    path.write_text(f"{len(indices.w2)} faces of {len(solution.positions)} vertices")\n',
+        "def write_count(solution, fields, path):\n"
+        "    faces = len(fields[0].values)\n"
+        '    path.write_text(f"{faces} faces of {len(solution.positions)} vertices")\n',
     )
     clone.insert(
         "io/export/writers.py",
@@ -272,6 +274,29 @@ def test_recipe_export(clone):
     faces, vertices = len(solved.cover.faces), len(solved.positions)
     text = (clone.folder / "seat.count").read_text()
     assert text == f"{faces} faces of {vertices} vertices"
+
+
+def test_recipe_wrinkle_index_or_measure(clone):
+    clone.write(
+        "src/seatlook/wrinkle/steepness.py",
+        "import numpy as np\n"
+        "def steepness(surface):\n"
+        "    p = surface.solution.positions[surface.solution.cover.faces]\n"
+        "    n = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])\n"
+        "    return 1.0 - np.abs(n[:, 2]) / np.linalg.norm(n, axis=1)\n",
+    )
+    entry = (
+        '    Index(name="steepness", symbol="Steepness", unit="1", limits=(0.0, 1.0),\n'
+        '          meaning="0 level, 1 upright", of=steepness),\n'
+    )
+    clone.insert("wrinkle/registry.py", ")\nINDICES: dict", entry)
+    line = "from seatlook.wrinkle.steepness import steepness\n"
+    clone.insert("wrinkle/registry.py", "from seatlook.wrinkle.surface import Surface", line)
+    io.write_result(io_samples.solution(), clone.folder / "seat.npz")
+    words = ["seatlook", "wrinkle", "seat.npz", "--export", "seat.csv", "--json"]
+    zones = json.loads(clone.run("-m", *words))["zones"]
+    assert all(0.0 <= zone["steepness_mean"] <= 1.0 for zone in zones)
+    assert "_STEEPNESS" in (clone.folder / "seat.csv").read_text()
 
 
 def test_recipe_render_quality(clone):

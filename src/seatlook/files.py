@@ -5,9 +5,10 @@ And where what can be made again is kept between runs.
 
 from __future__ import annotations
 
+import hashlib
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -66,3 +67,42 @@ def cache_folder() -> Path | None:
         return Path.home() / ".cache" / "seatlook"
     except RuntimeError:
         return None
+
+
+_LONGEST_NAME = 80  # characters; file systems take 255 bytes, and endings come behind
+
+
+def file_names(names: Iterable[str]) -> dict[str, str]:
+    """Name of a file or folder for each of some names, no two alike on any file system.
+
+    Small letters, digits and hyphens; a name that this does not tell from another one, or that
+    has no letters, or is very long, ends in a digest of itself.
+
+    Examples
+    --------
+    >>> file_names(["Bulb left", "suede"])
+    {'Bulb left': 'bulb-left', 'suede': 'suede'}
+    >>> sorted(file_names(["a b", "a-b"]).values())
+    ['a-b-c8687a08', 'a-b-d44362d6']
+    """
+    known = tuple(dict.fromkeys(names))
+    plain = {name: _plain(name) for name in known}
+    counts: dict[str, int] = {}
+    for text in plain.values():
+        counts[text] = counts.get(text, 0) + 1
+    clear = {n: t for n, t in plain.items() if t and counts[t] == 1 and len(t) <= _LONGEST_NAME}
+    taken = set(clear.values())
+    out = dict(clear)
+    for name in known:
+        if name not in out:
+            digest = hashlib.sha256(name.encode("utf-8", "surrogatepass")).hexdigest()
+            head = plain[name][:_LONGEST_NAME]
+            length = next(k for k in range(8, 65) if f"{head}-{digest[:k]}" not in taken)
+            out[name] = f"{head}-{digest[:length]}".strip("-")
+            taken.add(out[name])
+    return {name: out[name] for name in known}
+
+
+def _plain(name: str) -> str:
+    """Small letters and digits of a name, with hyphens for all else."""
+    return "".join(c if c.isalnum() and c.isascii() else "-" for c in name.lower()).strip("-")

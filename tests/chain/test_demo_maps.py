@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatlook.chain.evaluation import wrinkle_map
+from seatlook.chain.assess import assess
 from seatlook.mesh.kinematics import principal_values
 from seatlook.model.zones import FREE_EDGE
 from seatlook.visibility.view import on_foam
@@ -15,12 +15,12 @@ pytestmark = pytest.mark.validate
 @pytest.fixture(scope="module")
 def judged(spoiled):
     """Indices, principal curvatures of the shape as drawn and as solved, and weights by area."""
-    scene, solution = spoiled
+    _, solution = spoiled
     cover = solution.cover
     drawn = principal_values(shape_curvature(cover, on_foam(solution).positions))
     solved = principal_values(shape_curvature(cover, solution.positions))
     away = cover.zone != cover.zone_names.index(FREE_EDGE)
-    return wrinkle_map(scene, solution), drawn, solved, np.where(away, cover.rest_area, 0.0)
+    return assess(solution).indices, drawn, solved, np.where(away, cover.rest_area, 0.0)
 
 
 def mean(values, where, area):

@@ -79,9 +79,10 @@ def test_all_panels_are_in_every_picture_and_move(made, rendered):
 
 
 @pytest.mark.render
-def test_film_is_a_strip_and_an_animation(made, tmp_path):
+def test_film_is_a_strip_and_an_animation(made, tmp_path, monkeypatch):
+    monkeypatch.setattr("seatlook.chain.film._MOST", 3)
     scene, solution, folder = made
-    still, moving = film(solution, folder, tmp_path, camera=scene.cameras[0], width=80, most=3)
+    still, moving = film(solution, folder, tmp_path, camera=scene.cameras[0], width=80)
     with Image.open(still) as strip_of_four:
         assert strip_of_four.size == (3 * 80, 2 * (60 + 30))
     with Image.open(moving) as animation:

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from seatlook.chain.evaluation import draw_pictures
+from seatlook.chain.draw import Canvas, Exposures, draw_pictures
 from seatlook.errors import InputError
 from seatlook.exr import read_exr
 from seatlook.model import Rig, bulb
+from seatlook.model.progress import silent
 from support import scenes
 from support.reference.lit_sheets import GREY, above, flat, sheet
 
@@ -33,8 +34,8 @@ def solution():
 
 
 def draw(scene, solution, out, **options):
-    camera = above(size=(32, 24), fov=12.0)
-    draw_pictures(scene, solution, camera, out, lambda *a, **k: None, **options)
+    canvas = Canvas(solution=solution, camera=above(size=(32, 24), fov=12.0), out=out)
+    draw_pictures(scene, canvas, silent, exposures=Exposures(**options))
     return np.asarray(Image.open(out / "images/near/grey.png")).astype(float)
 
 

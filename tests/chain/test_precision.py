@@ -1,5 +1,6 @@
 import dataclasses
 import math
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -12,8 +13,14 @@ from support.scenes import two_panels
 
 
 def zone_row(zone, area, mean):
-    values = dict.fromkeys((f.name for f in dataclasses.fields(ZoneRow)), 0.0)
-    return ZoneRow(**(values | {"zone": zone, "area": area, "w2_mean": mean}))
+    return ZoneRow(
+        zone=zone,
+        area=area,
+        element_size=0.0,
+        stretch_share=0.0,
+        w2_error=0.0,
+        figures=MappingProxyType({"w2_mean": mean}),
+    )
 
 
 def test_element_size_follows_from_the_tolerance_and_the_wavelength():

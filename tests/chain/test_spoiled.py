@@ -6,10 +6,9 @@ from scipy.spatial import cKDTree
 
 from seatlook import io, mesh
 from seatlook.assembly import assemble
-from seatlook.chain.evaluation import wrinkle_map
-from seatlook.cli._demo import write_demo
+from seatlook.chain.assess import assess
+from seatlook.seats import write_demo
 from seatlook.solver import solve
-from seatlook.wrinkle import zone_table
 
 SEEDS = range(5)
 SEAM = "INSERT-BOLSTER_L"
@@ -40,8 +39,8 @@ def solve_all(folder, *, material, **spoil):
 
 
 def zone_means(scene, solutions, measure, zone):
-    tables = [zone_table(s, wrinkle_map(scene, s)) for s in solutions]
-    return np.array([getattr(r, measure) for t in tables for r in t if r.zone == zone])
+    tables = [assess(s).zones for s in solutions]
+    return np.array([r[measure] for t in tables for r in t if r.zone == zone])
 
 
 def standard_errors(difference: np.ndarray) -> float:

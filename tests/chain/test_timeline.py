@@ -190,7 +190,10 @@ def test_changed_hook_does_not_sew_again(whole, tmp_path):
         progress=lambda *, stage, **figures: seen.append(stage),
     )  # fmt: skip
     assert set(seen) == {"hook", "cover", "at rest"}
-    assert_same_bits(again, solve_in_stages(changed, tmp_path / "new"))
+    new = solve_in_stages(changed, tmp_path / "new")
+    # What was begun with another scene says so, and is never taken for a result of this one.
+    assert again.settings == f"{new.settings}, begun with another scene"
+    assert_same_bits(dataclasses.replace(again, settings=new.settings), new)
     moved = again.positions[:, 2] - whole[0].positions[:, 2]
     assert moved.min() < -0.001
     assert_same_bits(io.read_result(tmp_path / "1-sew.npz"), io.read_result(whole[1] / "1-sew.npz"))

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from seatlook.cli import app, run
+from seatlook.wrinkle import INDICES
 
 COMMANDS = [name for name in app if not name.startswith("-")]
 
@@ -308,12 +309,12 @@ def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
     assert missed.endswith("the limit is 1e-09")
     assert gallery == "gallery: index.html"
     heads, *rows = (evaluated / "stdout").read_text().splitlines()
-    assert heads.split()[:3] == ["zone", "area", "w2_mean"]
+    assert heads.split()[:3] == ["zone", "area_cm2", "w2_mean"]
     assert any(row.startswith("INSERT interior") for row in rows)
     assert len(list(evaluated.glob("images/*/*.png"))) == 6
     # A map may lie there a second time, in a range of its own.
     maps = {path.stem.removesuffix("-own") for path in evaluated.glob("maps/*.png")}
-    indices = {"w1", "w2", "w2_net", "w_stretch", "w_compression"}
+    indices = set(INDICES)
     texture = {"stretch_along", "stretch_across", "shear", "grain_drift", "checker"}
     assert maps == indices | texture | {"gap", "deviation"}
     page = (evaluated / "index.html").read_text()
@@ -387,5 +388,5 @@ def test_render_refuses_a_rig_the_scene_does_not_have(evaluated, tmp_path):
     words = ["render", "scene.toml", "result.npz", "--out", str(out), "--rig", "son"]
     done = seatlook(*words, cwd=evaluated)
     assert done.returncode == 2
-    assert "--rig: got 'son', expected one of sun, bulb left, bulb right" in done.stderr
+    assert "rig: got 'son', expected one of sun, bulb left, bulb right" in done.stderr
     assert not out.exists()

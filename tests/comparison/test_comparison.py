@@ -11,13 +11,16 @@ from types import MappingProxyType
 import pytest
 
 from seatlook import compare, io
+from seatlook.chain import case as module
+from seatlook.chain.case import Case
 from seatlook.cli import run
-from seatlook.comparison import compare as module
 from seatlook.comparison.compare import Comparison, variant_names
-from seatlook.comparison.visibility import VariantScores
+from seatlook.comparison.visibility import VariantScores, score_variants
+from seatlook.comparison.widgets import sliders
 from seatlook.errors import InputError
 from seatlook.report.comparison_page import write_comparison
 from seatlook.solver import solve
+from seatlook.wrinkle import INDICES
 from support.scene_files import write_two_panels
 
 pytestmark = pytest.mark.render
@@ -89,7 +92,7 @@ def test_without_ipywidgets_sliders_say_what_to_install(comparison, monkeypatch)
 
     monkeypatch.setattr(builtins, "__import__", absent)
     with pytest.raises(InputError, match=r'pip install "seatlook\[notebook\]"'):
-        comparison.sliders()
+        sliders(comparison)
 
 
 def test_the_page_says_first_what_differs(comparison, tmp_path):
@@ -99,21 +102,21 @@ def test_the_page_says_first_what_differs(comparison, tmp_path):
     assert "cover pvc: thickness_mm" in differences
     assert "texture suede: " not in differences
     assert len(list(tmp_path.glob("variants/*/*/*.png"))) == 8
-    assert len(list(tmp_path.glob("maps/*/*.png"))) == 8
+    assert len(list(tmp_path.glob("maps/*/*.png"))) == 2 * len(INDICES)
 
 
-def test_names_of_ones_own_that_would_share_a_folder_are_refused(folder):
-    path = folder / "scene.toml"
-    with pytest.raises(InputError, match=r"got ease 4\.0, ease 4\.0%, expected names"):
-        compare({"ease 4.0": path, "ease 4.0%": path})
+def test_names_that_make_one_file_name_get_two_folders(comparison, tmp_path):
+    first, second = comparison.variants.values()
+    named = replace(comparison, variants=MappingProxyType({"ease 4.0": first, "ease 4.0%": second}))
+    write_comparison(named, tmp_path)
+    assert len(list(tmp_path.glob("variants/*"))) == len(list(tmp_path.glob("maps/*"))) == 2
+    assert len(list(tmp_path.glob("variants/*/*/*.png"))) == 8
 
 
 def test_changes_are_named_once_and_long_heads_are_clipped_with_a_title(comparison, tmp_path):
     long = "a name of a variant as people write it into their scenes, with a date"
     first, second = comparison.variants.values()
-    named = replace(
-        comparison, variants=MappingProxyType({"pvc": first, long: replace(second, name=long)})
-    )
+    named = replace(comparison, variants=MappingProxyType({"pvc": first, long: second}))
     page = write_comparison(named, tmp_path).read_text()
     assert "Change: difference from pvc." in page
     assert f'title="change: {long}"><span class="clip">change: {long}</span>' in page
@@ -164,33 +167,36 @@ def test_scores_are_marked_and_the_widest_difference_opens_the_page(comparison, 
 
 def test_a_variant_that_cannot_be_scored_says_why(comparison):
     # A picture of 96 pixels is far too coarse for the gate.
-    scores = comparison.visibility()
+    scores = score_variants(comparison)
     assert set(scores.refused) | {name for name, _, _ in scores.vwi} == set(comparison.variants)
     assert all("expected" in reason for reason in scores.refused.values())
     assert "texture" in scores._repr_html_()
 
 
-def test_a_kept_result_is_taken_and_a_stale_one_is_not(folder, comparison, monkeypatch):
+def test_a_kept_result_is_taken_if_it_may_stand_for_the_scene(folder, comparison, monkeypatch):
     solved = []
-    monkeypatch.setattr(module, "solve", lambda cover: solved.append(cover) or solve(cover))
+    monkeypatch.setattr(module, "solve", lambda cover, **k: solved.append(cover) or solve(cover))
     scenes = {name: v.scene for name, v in comparison.variants.items()}
     compare(scenes, keep=str(folder / "kept"))
     assert solved == []
-    scenes["pvc"] = replace(scenes["pvc"], digest="another")
+    scenes["pvc"] = replace(scenes["pvc"], c_threshold=21.0)
     compare(scenes, keep=str(folder / "kept"))
     assert len(solved) == 1
+    path = folder / "kept" / "pvc" / "result.npz"
+    io.write_result(replace(io.read_result(path), status="not converged", reason="no"), path)
+    compare(scenes, keep=str(folder / "kept"))
+    assert len(solved) == 2
 
 
 def test_variants_are_told_apart(folder):
     scene = io.load_scene(folder / "scene.toml")
-    named = replace(scene, name="b")
-    assert variant_names([scene, named]) == ("two panels", "b")
-    # Their pictures would lie in one folder.
-    alike = replace(scene, name="Two Panels!", path=Path("x/other.toml"))
-    assert variant_names([scene, alike]) == ("scene", "other")
-    assert variant_names([scene, replace(scene, path=Path("x/other.toml"))]) == ("scene", "other")
-    folder_name = folder.name
-    assert variant_names([scene, scene]) == (f"1 {folder_name}", f"2 {folder_name}")
+
+    def names(*scenes):
+        return variant_names([Case(one) for one in scenes])
+
+    assert names(scene, replace(scene, name="b")) == ("two panels", "b")
+    assert names(scene, replace(scene, path=Path("x/other.toml"))) == ("scene", "other")
+    assert names(scene, scene) == ("1 two panels", "2 two panels")
 
 
 def test_compare_on_the_command_line(folder, tmp_path, capsys):

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from seatlook.chain.strain_map import write_strain_maps
 from seatlook.errors import InputError
 from seatlook.flattening import flatten
 from seatlook.flattening.fabric_sheet import fabric_energy, fabric_rows, grain_strain
 from seatlook.flattening.flatten import SEAM_TOLERANCE
 from seatlook.flattening.relax import _gradient, flatten_patch, strains_by_grain
+from seatlook.flattening.strain_map import write_strain_maps
 from seatlook.mesh import face_areas
 from seatlook.model import Curve, Fabric
 from support.rolls import rolled, sheet

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatlook.chain.findings import round_end
+from seatlook.chain.draw import round_end
 from seatlook.errors import InputError
 from seatlook.results.difference import difference, zone_differences
 from support.wrinkle_samples import SIZE, shaped, wave

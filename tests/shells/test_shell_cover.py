@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from seatlook import wrinkle
+from seatlook.chain.assess import assess
+from seatlook.chain.shell_states import ShellCriteria, shell_indices
 from seatlook.errors import InputError
 from seatlook.io.lsdyna.shells import read_shells
 from seatlook.mesh import face_normals
 from seatlook.shells.cover import shell_cover
-from seatlook.shells.strains import shell_indices
 from support.scenes import material
 
 DATA = Path(__file__).parents[1] / "data"
@@ -26,7 +27,7 @@ def strip():
 @pytest.mark.parametrize("mode", ["paper", "tensor"])
 def test_the_solution_has_the_same_indices(strip, mode, facing):
     state = strip.read(2)
-    found = shell_indices(strip.shells, state, curvature=mode, facing=facing)
+    found = shell_indices(strip.shells, state, ShellCriteria(curvature=mode, facing=facing))
     made = shell_cover(strip.shells, state, found, material(thickness=0.003))
     solution, element = made.solution, made.element
     assert made.projected == ()
@@ -66,8 +67,7 @@ def test_parts_become_panels_with_their_own_vertices(strip):
     assert cover.panel_names == ("insert", "part 8")
     owners = [set(cover.faces[cover.panel == k].ravel()) for k in (0, 1)]
     assert not owners[0] & owners[1]
-    assert {row.zone for row in wrinkle.zone_table(solution, wrinkle.wrinkle_indices(
-        *wrinkle.surface_strains(solution), 0.0012, 20.0))} == {"insert", "part 8"}  # fmt: skip
+    assert {row.zone for row in assess(solution).zones} == {"insert", "part 8"}
     with pytest.raises(InputError, match=r"materials: got none for parts \[8\]"):
         shell_cover(shells, state, found, {3: cloth})
 
@@ -78,7 +78,7 @@ def test_a_part_without_a_flat_state_is_laid_out_along_the_axes(strip, reference
     state = strip.read(1)
     shape = state.positions if reference == "bent" else None
     shells = dataclasses.replace(strip.shells, reference=shape)
-    found = shell_indices(shells, state, curvature="tensor", facing=(0, 0, 1))
+    found = shell_indices(shells, state, ShellCriteria(curvature="tensor", facing=(0, 0, 1)))
     made = shell_cover(shells, state, found, material())
     cover = made.solution.cover
     assert made.projected == ("part 1",)
@@ -102,6 +102,6 @@ def test_strains_of_a_turned_shell_keep_their_shear(strip):
     corners[::3] = corners[::3][:, [1, 0, 2, 2]]
     turned = dataclasses.replace(shells, corners=corners)
     for one in (shells, turned):
-        found = shell_indices(one, state, facing=(0, 0, 1))
+        found = shell_indices(one, state, ShellCriteria(facing=(0, 0, 1)))
         solution = shell_cover(one, state, found, material()).solution
         np.testing.assert_allclose(solution.strain_mid[:, 0, 1], 0.01, rtol=1e-6)

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from seatlook.chain.shell_states import ShellCriteria, wrinkle_states
 from seatlook.errors import InputError
-from seatlook.shells.states import wrinkle_states
 from support.d3plot_samples import d3plot, quad_strip
 
 DATA = Path(__file__).parents[1] / "data"
@@ -16,7 +16,7 @@ DATA = Path(__file__).parents[1] / "data"
 @pytest.mark.parametrize(("mode", "c"), [("paper", 0.01), ("tensor", 0.02)])
 def test_bent_strip(mode, c):
     """Flat, arch, valley: sign and size per state, from the d3plot and from the keywords."""
-    figures = wrinkle_states(DATA / "bent_strip.d3plot", curvature=mode)
+    figures = wrinkle_states(DATA / "bent_strip.d3plot", ShellCriteria(curvature=mode))
     assert [s["c"] for s in figures["states"]] == pytest.approx([0.0, c, -c], rel=0.01)
     assert [s["time"] for s in figures["states"]] == [0.0, 1.0, 2.0]
     for state in figures["states"]:
@@ -25,7 +25,9 @@ def test_bent_strip(mode, c):
         assert state["parts"][0]["c"] == state["c"]
     assert figures["states"][2]["w2"] == pytest.approx(1.0, rel=0.01)
     assert figures["states"][1]["w2"] == pytest.approx(0.0, abs=1e-12)
-    deck = wrinkle_states(DATA / "bent_strip_dynain.k", curvature=mode, thickness=0.0012)
+    deck = wrinkle_states(
+        DATA / "bent_strip_dynain.k", ShellCriteria(curvature=mode), thickness=0.0012
+    )
     assert [s["c"] for s in deck["states"]] == pytest.approx([-c], rel=0.01)
     assert json.loads(json.dumps(figures)) == figures
 
@@ -45,7 +47,7 @@ def test_parts_and_threshold(tmp_path):
     assert [(p["part"], p["name"]) for p in here["parts"]] == [(11, "insert"), (12, "bolster")]
     assert sum(p["area_mm2"] for p in here["parts"]) == pytest.approx(here["area_mm2"])
     assert here["area_mm2"] == pytest.approx(600.0)
-    bolster = wrinkle_states(path, parts=["bolster"], c_threshold=5.0)
+    bolster = wrinkle_states(path, ShellCriteria(c_threshold=5.0), parts=["bolster"])
     assert bolster["c_threshold_per_mm"] == 0.005
     assert bolster["states"][0]["c"] == pytest.approx(here["parts"][1]["c"])
     assert bolster["states"][0]["w2"] == pytest.approx(2 * here["parts"][1]["w2"])

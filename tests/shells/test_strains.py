@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
+from seatlook.chain.shell_states import ShellCriteria, shell_indices
 from seatlook.errors import InputError
 from seatlook.model import Shells, ShellState
-from seatlook.shells.strains import shell_indices
 
 R, T = 0.05, 0.0012
 
@@ -70,7 +70,7 @@ def turned(shells, state, rows):
 @pytest.mark.parametrize(("mode", "share"), [("paper", 0.5), ("tensor", 1.0)])
 def test_arch_and_valley_from_global_strains(quads, sign, mode, share):
     """The thickness strain, as large as the bending strain, does not win eq. (1)."""
-    w = shell_indices(*bent(sign, quads=quads), curvature=mode)
+    w = shell_indices(*bent(sign, quads=quads), ShellCriteria(curvature=mode))
     np.testing.assert_allclose(w.indices.c, sign * share / R, rtol=1e-6)
     assert w.source == "strains"
     assert w.indices.w2.max() == pytest.approx(1.0 if sign < 0 else 0.0, abs=1e-6)
@@ -80,8 +80,8 @@ def test_arch_and_valley_from_global_strains(quads, sign, mode, share):
 def test_elements_numbered_the_other_way_round_change_nothing(mode):
     shells, state = bent(-1, quads=False)
     rows = [0, 3, 17, 60, 61, 100]
-    plain = shell_indices(shells, state, curvature=mode)
-    w = shell_indices(*turned(shells, state, rows), curvature=mode)
+    plain = shell_indices(shells, state, ShellCriteria(curvature=mode))
+    w = shell_indices(*turned(shells, state, rows), ShellCriteria(curvature=mode))
     assert w.turned == len(rows)
     np.testing.assert_allclose(w.indices.c, plain.indices.c)
 
@@ -89,8 +89,8 @@ def test_elements_numbered_the_other_way_round_change_nothing(mode):
 def test_facing_decides_which_side_is_seen():
     shells, state = bent(1, tilt=False)
     up, down = np.array([0.0, 0, 1]), np.array([0.0, 0, -1])
-    assert shell_indices(shells, state, facing=up).indices.c.min() > 0
-    below = shell_indices(shells, state, facing=down)
+    assert shell_indices(shells, state, ShellCriteria(facing=up)).indices.c.min() > 0
+    below = shell_indices(shells, state, ShellCriteria(facing=down))
     assert below.indices.c.max() < 0
     assert below.turned == len(shells)
 
@@ -98,7 +98,7 @@ def test_facing_decides_which_side_is_seen():
 @pytest.mark.parametrize("quads", [True, False])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_without_strains_the_shape_tells(quads, sign):
-    w = shell_indices(*bent(sign, quads=quads, strains=False), curvature="tensor")
+    w = shell_indices(*bent(sign, quads=quads, strains=False), ShellCriteria(curvature="tensor"))
     assert w.source == "shape"
     np.testing.assert_allclose(w.indices.c, sign / R, rtol=0.01)
     assert np.abs(w.strain_mid).max() < 1e-3
@@ -109,7 +109,7 @@ def test_membranes_get_their_bending_from_the_shape():
     shells, state = bent(-1)
     stretch = np.broadcast_to(0.02 * np.eye(3), state.strain_inner.shape)
     state = dataclasses.replace(state, strain_inner=stretch, strain_outer=stretch)
-    w = shell_indices(shells, state, curvature="tensor")
+    w = shell_indices(shells, state, ShellCriteria(curvature="tensor"))
     assert w.source == "shape"
     np.testing.assert_allclose(w.indices.c, -1 / R, rtol=0.01)
     np.testing.assert_allclose(w.strain_mid, np.broadcast_to(0.02 * np.eye(2), w.strain_mid.shape),
@@ -121,7 +121,7 @@ def test_membranes_get_their_bending_from_the_shape():
     mixed = shell_indices(
         dataclasses.replace(shells, part=part),
         dataclasses.replace(state, strain_inner=inner, strain_outer=outer),
-        curvature="tensor",
+        ShellCriteria(curvature="tensor"),
     )
     assert mixed.source == "strains and shape"
     np.testing.assert_allclose(mixed.indices.c[:40], 0.001 / T, rtol=1e-9)
@@ -152,7 +152,8 @@ def test_strains_in_element_axes():
     e = np.zeros((len(shells), 3, 3))
     e[:, 0, 0], e[:, 2, 2] = -0.012, 0.012
     state = dataclasses.replace(state, strain_inner=-e, strain_outer=e, strain_axes="element")
-    np.testing.assert_allclose(shell_indices(shells, state, curvature="tensor").indices.c, -20.0)
+    w = shell_indices(shells, state, ShellCriteria(curvature="tensor"))
+    np.testing.assert_allclose(w.indices.c, -20.0)
 
 
 def test_deleted_shells_are_left_out():

@@ -5,8 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
+from seatlook.chain.shell_states import ShellCriteria, shell_indices
 from seatlook.model import Shells, ShellState
-from seatlook.shells.strains import element_frames, shell_indices
+from seatlook.shells.strains import element_frames
 from support.cubic import FRAME, SIZE, exact, share, surface
 
 THRESHOLD = 20.0
@@ -72,7 +73,7 @@ def test_bending_from_the_shape(bent):
     rows = np.random.default_rng(2).choice(len(corners), len(corners) // 5, replace=False)
     mixed = turned_round(corners, rows)
     shells, state = shells_on(surface(X), surface(X, bent), mixed)
-    w = shell_indices(shells, state, curvature="tensor", c_threshold=THRESHOLD)
+    w = shell_indices(shells, state, ShellCriteria(curvature="tensor", c_threshold=THRESHOLD))
     assert w.source == "shape"
     assert len(w.element) == state.alive.sum() < len(corners)
     assert (np.isin(w.element, rows) == (w.sign < 0)).all()
@@ -102,7 +103,7 @@ def test_middle_strain_of_a_sheared_sheet():
     flat = np.pad(X, ((0, 0), (0, 1)))
     moved = np.pad(X @ F.T, ((0, 0), (0, 1))) @ FRAME.T
     shells, state = shells_on(moved, flat, corners)
-    w = shell_indices(shells, state, curvature="tensor")
+    w = shell_indices(shells, state, ShellCriteria(curvature="tensor"))
     plane = element_frames(shells, flat, w.element)[0][:, :2, :2]
     green = 0.5 * (F.T @ F - np.eye(2))
     np.testing.assert_allclose(
@@ -138,7 +139,7 @@ def test_strains_of_every_element_are_its_own():
     state = dataclasses.replace(
         state, strain_inner=in_space(mid - bend, 0.3), strain_outer=in_space(mid + bend, -0.4)
     )
-    w = shell_indices(shells, state, curvature="tensor", c_threshold=THRESHOLD)
+    w = shell_indices(shells, state, ShellCriteria(curvature="tensor", c_threshold=THRESHOLD))
     sign = np.where(np.isin(w.element, rows), -1.0, 1.0)
     np.testing.assert_array_equal(w.sign, sign)
     np.testing.assert_allclose(w.area, area[w.element])
@@ -162,7 +163,7 @@ def test_only_the_parts_without_bending_strains_are_bent_by_their_shape():
     own = 0.004 * np.linspace(1, 2, len(corners))[:, None, None] * e1[:, :, None] * e1[:, None]
     bend = np.where(blind[:, None, None], 0.0, own)
     state = dataclasses.replace(state, strain_inner=stretch - bend, strain_outer=stretch + bend)
-    w = shell_indices(shells, state, curvature="tensor", c_threshold=THRESHOLD)
+    w = shell_indices(shells, state, ShellCriteria(curvature="tensor", c_threshold=THRESHOLD))
     assert w.source == "strains and shape"
     side, t = blind[w.element], state.thickness[w.element]
     np.testing.assert_allclose(

@@ -9,6 +9,7 @@ from seatlook.io.material import read_foam_material, read_material
 from seatlook.model import (
     Anchor,
     Cover,
+    Field,
     Foam,
     Points,
     Solution,
@@ -16,6 +17,7 @@ from seatlook.model import (
     Stitching,
     WrinkleMap,
 )
+from seatlook.wrinkle import INDICES
 
 
 def cover():
@@ -103,3 +105,17 @@ def as_placed(c):
         friction_anchor=np.zeros((n, 3)),
         **{name: np.zeros((m, 2, 2)) for name in ("strain_top", "strain_mid", "strain_bottom")},
     )  # fmt: skip
+
+
+def fields_of(indices):
+    """The paper's indices as the fields that exports carry."""
+    return tuple(
+        Field(
+            name=index.export_name,
+            unit=index.unit,
+            meaning=index.meaning,
+            values=index.scale * getattr(indices, index.name),
+        )
+        for index in INDICES.values()
+        if hasattr(indices, index.name)
+    )

@@ -4,7 +4,7 @@ import pytest
 
 from seatlook import io
 from seatlook.assembly import assemble
-from seatlook.cli._demo import write_demo
+from seatlook.seats import write_demo
 from seatlook.solver import solve
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from seatlook import io, mesh
 from seatlook.assembly import assemble
-from seatlook.cli._demo import write_demo
 from seatlook.results.energy_balance import energy_balance
+from seatlook.seats import write_demo
 from seatlook.solver import solve
 
 pytestmark = pytest.mark.validate

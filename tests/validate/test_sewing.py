@@ -5,11 +5,10 @@ import pytest
 
 from seatlook import model
 from seatlook.assembly import assemble
-from seatlook.chain.evaluation import wrinkle_map
+from seatlook.chain.assess import assess
 from seatlook.results.energy_balance import energy_balance
 from seatlook.results.gap import gap
 from seatlook.solver import solve
-from seatlook.wrinkle import zone_table
 from support import patch
 
 pytestmark = pytest.mark.validate
@@ -32,7 +31,7 @@ def solved(scene, seed=0):
 
 
 def zone(scene, solution, name):
-    rows = zone_table(solution, wrinkle_map(scene, solution))
+    rows = assess(solution).zones
     return next(row for row in rows if row.zone == name)
 
 
@@ -93,7 +92,7 @@ def test_hem_changes_the_seam_and_hardly_the_shape(material, report):
         for hem in bands:
             scene = patch.scene(material=material, hem=hem)
             pair[hem] = solved(scene, seed)
-            bands[hem].append(zone(scene, pair[hem], "seam LEFT-RIGHT").w2_mean)
+            bands[hem].append(zone(scene, pair[hem], "seam LEFT-RIGHT")["w2_mean"])
         rms.append(patch.shape_rms(pair[False], pair[True]))
     score = differ(bands[False], bands[True])
     report(
@@ -120,7 +119,7 @@ def test_compression_in_the_band_grows_with_the_ease(report):
 
 def stretched_share(scene, solution):
     """W_stretch / W2 of the right panel, over elements with W2 > 0.1 and a strain above 1e-3."""
-    w, cover = wrinkle_map(scene, solution), solution.cover
+    w, cover = assess(solution).indices, solution.cover
     strain = np.abs(np.linalg.eigvalsh(solution.strain_mid)).max(axis=1)
     inner = np.array([name != "free edge" for name in cover.zone_names])[cover.zone]
     chosen = inner & (cover.panel == 1) & (w.w2 > 0.1) & (strain > 1e-3)
@@ -182,6 +181,6 @@ def test_balanced_hooking_improves_map_and_zones(report):
         area = solution.cover.rest_area[known]
         rms = np.sqrt(np.average(gaps[known] ** 2, weights=area))
         found = zone(mine, solution, "seam LEFT-RIGHT")
-        row[name] = rms, found.w2_mean
-        report(f"{name}: gap rms {1e3 * rms:.3f} mm, W2 in the band {found.w2_mean:.4f}")
+        row[name] = rms, found["w2_mean"]
+        report(f"{name}: gap rms {1e3 * rms:.3f} mm, W2 in the band {found['w2_mean']:.4f}")
     assert row["after"][0] < row["before"][0]

@@ -11,7 +11,9 @@ from hypothesis.extra.numpy import arrays
 
 from seatlook import wrinkle
 from seatlook.errors import InputError
-from seatlook.wrinkle import MEASURES, TENSION_STATES, isotropic_membrane
+from seatlook.model import Criteria, criteria_of
+from seatlook.model.criteria import threshold_of_radius
+from seatlook.wrinkle import INDICES, TENSION_STATES, Surface, isotropic_membrane
 from support.wrinkle_samples import shaped, wave
 
 # major, minor, Poisson ratio, R of eq. (4), signed ratio, tension field
@@ -93,11 +95,11 @@ def test_threshold_of_a_bending_radius():
     t, r = 0.0012, 0.03
     fold = np.diag([-t / 2 / r, 0.0])[None]
     for mode in ("paper", "tensor"):
-        threshold = float(wrinkle.threshold_of_radius(r, mode))
+        threshold = float(threshold_of_radius(r, mode))
         w = wrinkle.wrinkle_indices(fold, 0 * fold, -fold, t, threshold, curvature=mode)
         assert w.w2[0] == pytest.approx(1.0, rel=1e-12)
     with pytest.raises(InputError, match="radius: got 0, expected above 0"):
-        wrinkle.threshold_of_radius(0, "paper")
+        threshold_of_radius(0, "paper")
 
 
 def test_strain_measure_changes_the_indices_and_is_checked():
@@ -130,8 +132,8 @@ def test_a_wrinkle_stays_in_the_net_index_and_a_wide_valley_does_not():
     for wavelength, height, low, high in ((0.02, 0.0003, 0.85, 1.05), (0.24, -0.02, 0.0, 0.15)):
         solution = shaped(wave(height, wavelength), h=0.002 if wavelength < 0.1 else 0.005)
         indices = indexed(solution)
-        surface = wrinkle.surface_of(solution, indices, 20.0)
-        net, plain = MEASURES["w2_net"](surface), indices.w2
+        surface = Surface(solution, indices, Criteria(thresholds=(20.0,)))
+        net, plain = INDICES["w2_net"].values(surface), indices.w2
         p = solution.cover.rest[solution.cover.faces].mean(axis=1)
         middle = (np.abs(p - 0.06) < 0.035).all(axis=1)
         ratio = net[middle].sum() / plain[middle].sum()
@@ -140,13 +142,13 @@ def test_a_wrinkle_stays_in_the_net_index_and_a_wide_valley_does_not():
 
 def test_every_index_and_measure_gives_one_finite_number_per_face():
     solution = shaped(wave(0.0005, 0.04))
-    surface = wrinkle.surface_of(solution, indexed(solution), 20.0)
-    for name, function in (wrinkle.INDICES | MEASURES).items():
-        values = function(surface)
+    surface = Surface(solution, indexed(solution), Criteria(thresholds=(20.0,)))
+    for name, index in INDICES.items():
+        values = index.values(surface)
         assert values.shape == (len(solution.cover.faces),), name
         assert np.isfinite(values).all(), name
-    both = MEASURES["w2_net_stretch"](surface) + MEASURES["w2_net_compression"](surface)
-    np.testing.assert_allclose(both, MEASURES["w2_net"](surface), rtol=1e-12)
+    both = sum(INDICES[f"w2_net_{cause}"].values(surface) for cause in ("stretch", "compression"))
+    np.testing.assert_allclose(both, INDICES["w2_net"].values(surface), rtol=1e-12)
 
 
 def test_a_million_states_have_no_surprise():
@@ -175,5 +177,5 @@ def test_each_material_brings_its_own_threshold():
     )
     cover = dataclasses.replace(cover, materials=own)
     for mode, by_radius in (("tensor", 40.0), ("paper", 20.0)):
-        limits = wrinkle.thresholds(cover, mode, 15.0)
+        limits = criteria_of(cover.materials, mode, default=15.0).per_face(cover.panel)
         assert [set(limits[cover.panel == k]) for k in range(3)] == [{15.0}, {33.0}, {by_radius}]

@@ -21,8 +21,9 @@ def bumpy(X):
 
 def figures(solution, indices, net=None):
     """Rows of the table by zone, as mappings."""
-    rows = wrinkle.zone_table(solution, indices, net)
-    return {row.zone: dataclasses.asdict(row) for row in rows}
+    values = {name: getattr(indices, name) for name in ("w2", "w_stretch", "w_compression")}
+    rows = wrinkle.zone_table(solution.cover, values if net is None else values | {"w2_net": net})
+    return {row.zone: row.values() for row in rows}
 
 
 @pytest.fixture(scope="module")

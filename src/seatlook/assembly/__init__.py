@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
 from seatlook import mesh
 from seatlook.assembly.builder import Builder
+from seatlook.assembly.digest import content_digest
 from seatlook.assembly.hem import hem_of
+from seatlook.assembly.placing import with_poses
 from seatlook.errors import AssemblyError, Problem
-from seatlook.model import Cover, FloatArray, Hook, IntArray, Panel, Scene
+from seatlook.model import Cover, FloatArray, Hook, IntArray, Panel, Scene, criteria_of
 from seatlook.model.zones import zones
 
 # Wavelengths [m] of a cut panel's unevenness: from the shortest wrinkle of a cover on its foam to
@@ -31,37 +35,42 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
     Returns
     -------
     Cover
-        Panels in the pattern's order, ready for ``solve``.
+        Panels in the pattern's order, ready for ``solve``. It carries the scene's criteria and the
+        digest of the scene with these two.
+
+    Notes
+    -----
+    Panels without a pose are laid out over the foam, see :func:`with_poses`.
 
     Raises
     ------
     AssemblyError
-        A panel without material or pose, or parts that do not fit each other; all of them at once.
+        A panel without material, or parts that do not fit each other; all of them at once.
     InputError
         A panel that cannot be meshed at this element size.
     """
-    _check_panels(scene)
-    h = scene.element_size if element_size is None else element_size
-    seed = scene.seed if seed is None else seed
+    _check_materials(scene)
+    scene = with_mesh(scene, element_size=element_size, seed=seed)
+    digest = content_digest(scene)
+    scene = with_poses(scene)
     panels = scene.pattern.panels
-    scale = h / scene.element_size
-    finer = {name: scale * size for name, size in scene.element_sizes.items()}
-    builder = Builder(scene.pattern, h, finer)
+    builder = Builder(scene.pattern, scene.element_size, scene.element_sizes)
     for i, panel in enumerate(panels):
-        builder.add(panel, _hooked_lines(scene.hooks, panel), seed=1000 * seed + i)
+        builder.add(panel, _hooked_lines(scene.hooks, panel), seed=1000 * scene.seed + i)
     uv, faces, owner = builder.arrays()
     placed = _placed(uv, owner, scene)
     zone, zone_names = zones(
         uv[faces].mean(axis=1), owner[faces[:, 0]], scene.pattern, boxes=scene.boxes
     )
+    materials = tuple(scene.materials[p.name] for p in panels)
     return Cover(
         rest=_along_grain(uv, owner, panels),
         uv=uv,
-        positions=placed + _imperfection(uv, owner, scene, seed),
+        positions=placed + _imperfection(uv, owner, scene),
         faces=faces,
         panel=owner[faces[:, 0]],
         panel_names=tuple(p.name for p in panels),
-        materials=tuple(scene.materials[p.name] for p in panels),
+        materials=materials,
         zone=zone,
         zone_names=zone_names,
         stitchings=tuple(builder.stitching(s, scene.stage_of(s.name)) for s in scene.pattern.seams),
@@ -73,22 +82,31 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
         stages=scene.stages,
         foam=scene.foam,
         thread=scene.thread,
+        criteria=criteria_of(materials, scene.curvature, default=scene.c_threshold),
         element_size=float(mesh.edge_lengths(uv, faces).mean()),
-        seed=seed,
-        scene_digest=scene.digest,
+        seed=scene.seed,
+        scene_digest=digest,
     )
 
 
-def _check_panels(scene: Scene) -> None:
-    """Refuse panels without material or pose, all named at once."""
+def with_mesh(scene: Scene, *, element_size: float | None = None, seed: int | None = None) -> Scene:
+    """Put another element size [m] and seed into a scene; panels' own sizes scale with it."""
+    size = scene.element_size if element_size is None else element_size
+    scale = size / scene.element_size
+    return replace(
+        scene,
+        element_size=size,
+        element_sizes=MappingProxyType({n: scale * s for n, s in scene.element_sizes.items()}),
+        seed=scene.seed if seed is None else seed,
+    )
+
+
+def _check_materials(scene: Scene) -> None:
+    """Refuse panels without material, all named at once."""
     problems = [
-        Problem(key=f"{key}.{panel.name}", got="nothing", expected=expected, file=scene.path)
+        Problem(key=f"panel.{panel.name}", got="nothing", expected="a material", file=scene.path)
         for panel in scene.pattern.panels
-        for key, table, expected in (
-            ("panel", scene.materials, "a material"),
-            ("placement", scene.placement, "a pose (rotation, translation_mm)"),
-        )
-        if panel.name not in table
+        if panel.name not in scene.materials
     ]
     if problems:
         raise AssemblyError(problems)
@@ -109,12 +127,12 @@ def _along_grain(uv: FloatArray, owner: IntArray, panels: Sequence[Panel]) -> Fl
     return np.column_stack([(uv * warp).sum(axis=1), (uv * weft).sum(axis=1)])
 
 
-def _imperfection(uv: FloatArray, owner: IntArray, scene: Scene, seed: int) -> FloatArray:
+def _imperfection(uv: FloatArray, owner: IntArray, scene: Scene) -> FloatArray:
     """Offset (n, 3) [m] along the panels' normals, rms 0.3 t: a flat sheet never buckles."""
     names = [p.name for p in scene.pattern.panels]
     thickness = np.array([scene.materials[name].fabric.thickness for name in names])
     normal = np.stack([scene.placement[name].rotation[:, 2] for name in names])
-    height = 0.3 * thickness[owner] * _waves(uv, seed)
+    height = 0.3 * thickness[owner] * _waves(uv, scene.seed)
     return np.asarray(height[:, None] * normal[owner])
 
 

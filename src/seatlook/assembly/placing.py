@@ -9,7 +9,7 @@ from seatlook.assembly.unfolding import lay_out
 from seatlook.model import Scene
 
 
-def placed(scene: Scene) -> Scene:
+def with_poses(scene: Scene) -> Scene:
     """Return the scene with a pose for every panel; those it states stay as they are.
 
     The others are laid out over the foam as ``seatlook init`` does: the largest panel on top, each

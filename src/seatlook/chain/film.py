@@ -22,6 +22,7 @@ Pixels = npt.NDArray[np.uint8]
 
 AT_REST = "at rest"
 _LABEL = 30  # height of a label [px]
+_MOST = 30  # pictures in the animation, spread evenly over the run
 _PAPER, _INK = 248, (40, 40, 40)
 _WHOLE = 1.1  # of the way from the camera to the cover's farthest point
 
@@ -102,7 +103,6 @@ def film(
     rig: Rig | None = None,
     width: int = 480,
     seconds: float = 5.0,
-    most: int = 30,
 ) -> tuple[Path, Path]:
     """Write ``timeline.png``, a picture per stage, and ``timeline.gif``, and return their paths.
 
@@ -112,7 +112,6 @@ def film(
     rig : lights of the picture per stage; without it that is drawn as clay, as the animation is
     width : of one picture [px]; the height follows from the camera
     seconds : the animation lasts
-    most : pictures in the animation, spread evenly over the run
     """
     taken = shots(solution, folder)
     small = dataclasses.replace(
@@ -121,7 +120,7 @@ def film(
     still, moving = out / "timeline.png", out / "timeline.gif"
     pictures = list(draw(solution, ends(taken), camera=small, rig=rig))
     write_bytes(still, png(strip(pictures)))
-    every = np.unique(np.linspace(0, len(taken) - 1, min(most, len(taken))).round().astype(int))
+    every = np.unique(np.linspace(0, len(taken) - 1, min(_MOST, len(taken))).round().astype(int))
     chosen = tuple(taken[k] for k in every)
     io.write_animation(list(draw(solution, chosen, camera=small)), moving, seconds=seconds)
     return still, moving

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatlook.assembly import assemble
-from seatlook.chain.evaluation import wrinkle_map
+from seatlook.assembly import with_mesh
+from seatlook.chain.case import Case
 from seatlook.errors import InputError
 from seatlook.model import Scene, Solution
-from seatlook.solver import SolverSettings, foam_wavelength, solve
-from seatlook.solver.solve import Progress
-from seatlook.wrinkle import ZoneRow, zone_table
+from seatlook.model.progress import Progress, silent
+from seatlook.solver import SolverSettings, foam_wavelength
+from seatlook.wrinkle import ZoneRow
 
 # Recovered curvature of a wave: relative error 3.9 (h / lambda)^2, measured at 8 and 16 elements.
 _CURVATURE = 3.9
@@ -108,7 +108,7 @@ def plan(scene: Scene, tolerance: float) -> Plan:
     return Plan(size, _STEP * min(1.0, 0.5 * tolerance / _STEP_ERROR), wave)
 
 
-def solve_to(scene: Scene, tolerance: float, *, progress: Progress | None = None) -> Precise:
+def solve_to(scene: Scene, tolerance: float, *, progress: Progress = silent) -> Precise:
     """Solve on the planned mesh and on one coarser by the root of two, and compare zone means.
 
     For a method of second order the difference between the two meshes is the error of the finer.
@@ -120,17 +120,21 @@ def solve_to(scene: Scene, tolerance: float, *, progress: Progress | None = None
     """
     chosen = plan(scene, tolerance)
     fine, coarse = (
-        solve(
-            assemble(scene, element_size=size),
-            settings=SolverSettings(dt=chosen.dt),
-            progress=progress,
-        )
+        Case(with_mesh(scene, element_size=size))
         for size in (chosen.element_size, _RATIO * chosen.element_size)
     )
-    rows = [zone_table(solution, wrinkle_map(scene, solution)) for solution in (fine, coarse)]
+    for case in (fine, coarse):
+        case.solve(settings=SolverSettings(dt=chosen.dt), progress=progress)
+    rows = [case.assessment.zones for case in (fine, coarse)]
     zones, error = compare_means(*rows)
-    return Precise(plan=chosen, solution=fine, coarse=coarse, zones=zones, error=error,
-                   tolerance=tolerance)  # fmt: skip
+    return Precise(
+        plan=chosen,
+        solution=fine.solution,
+        coarse=coarse.solution,
+        zones=zones,
+        error=error,
+        tolerance=tolerance,
+    )
 
 
 def compare_means(
@@ -140,13 +144,13 @@ def compare_means(
 
     A zone without a face on the coarser mesh has no error: nan, and does not count.
     """
-    other = {row.zone: row.w2_mean for row in coarse}
+    other = {row.zone: row["w2_mean"] for row in coarse}
     zones = tuple(
-        ZoneMean(row.zone, row.w2_mean, abs(row.w2_mean - other.get(row.zone, math.nan)))
+        ZoneMean(row.zone, row["w2_mean"], abs(row["w2_mean"] - other.get(row.zone, math.nan)))
         for row in fine
     )
     area = np.array([row.area for row in fine])
-    mean = float(np.array([row.w2_mean for row in fine]) @ area / area.sum())
+    mean = float(np.array([row["w2_mean"] for row in fine]) @ area / area.sum())
     errors = np.array([zone.error for zone in zones])
     known = np.isfinite(errors)
     square = float(errors[known] ** 2 @ area[known] / area[known].sum())

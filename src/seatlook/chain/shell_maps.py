@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from seatlook import io, pbr
-from seatlook.chain.evaluation import draw_maps
-from seatlook.chain.findings import Findings, draw_findings, find, write_findings
+from seatlook.chain.assess import Assessment, assess
+from seatlook.chain.draw import Canvas, Drawn, draw_distortion, draw_maps
+from seatlook.chain.files import write_findings
 from seatlook.chain.framing import fitted_view, side_light
-from seatlook.model import Camera, Rig, Shells, WrinkleMap
+from seatlook.chain.shell_states import ShellCriteria, ShellWrinkles
+from seatlook.model import Camera, Criteria, Rig, Shells, Strains
 from seatlook.model.progress import Progress
 from seatlook.shells.cover import ShellCover
-from seatlook.shells.strains import ShellWrinkles
 
-if TYPE_CHECKING:
-    from seatlook.pbr import Picture
-
-PICTURE = "picture.png"
+PICTURE, ELEMENTS = "picture.png", "elements.csv"
 # From this many triangles the sky and the light between shells are left out of the picture: they
 # are gathered at every vertex, and would take longer than all the rest.
 _MANY = 200_000
@@ -31,33 +27,47 @@ class DrawnState:
 
     Parameters
     ----------
-    maps, distortion : name -> path and picture; no distortion without a flat undeformed state
+    maps, distortion : no distortion without a flat undeformed state
     files : tables
     quality : tier of the picture
     """
 
     folder: Path
     cover: ShellCover
-    findings: Findings
+    assessment: Assessment
     camera: Camera
     rig: Rig
-    maps: MappingProxyType[str, tuple[str, Picture]]
-    distortion: MappingProxyType[str, tuple[str, Picture]] = field(
-        default_factory=lambda: MappingProxyType({})
-    )
+    maps: tuple[Drawn, ...]
+    distortion: tuple[Drawn, ...]
     files: tuple[str, ...]
     quality: str
+
+
+def assess_shells(
+    cover: ShellCover, wrinkles: ShellWrinkles, criteria: ShellCriteria
+) -> Assessment:
+    """Assess a state on the faces of its cover, each with the strains of its shell."""
+    of_shells, row = wrinkles.strains, cover.element
+    strains = Strains(
+        top=of_shells.top[row],
+        mid=of_shells.mid[row],
+        bottom=of_shells.bottom[row],
+        thickness=of_shells.thickness[row],
+        panel=of_shells.panel[row],
+    )
+    chosen = Criteria(curvature=criteria.curvature, thresholds=(criteria.threshold,))
+    return assess(cover.solution, chosen, strains=strains)
 
 
 def draw_state(
     shells: Shells,
     wrinkles: ShellWrinkles,
     cover: ShellCover,
+    assessment: Assessment,
     out: Path,
     *,
     top: float,
-    say: Progress,
-    size: tuple[int, int] = (1280, 720),
+    progress: Progress,
 ) -> DrawnState:
     """Draw maps and a picture of one state into a folder, with its worst wrinkles and tables.
 
@@ -66,7 +76,7 @@ def draw_state(
 
     Parameters
     ----------
-    cover : of the same state, from ``shell_cover``
+    cover, assessment : of the same state, from ``shell_cover`` and ``assess_shells``
     top : upper end of the range of W2, the same for all states
 
     Raises
@@ -75,28 +85,19 @@ def draw_state(
     """
     pbr.offscreen_backend()
     solution = cover.solution
-    indices = on_faces(wrinkles.indices, cover)
-    camera = fitted_view(solution, size=size)
-    maps = draw_maps(solution, indices, camera, out, say, top=top)
-    write_elements(shells, wrinkles, out / "elements.csv")
-    found = find(solution, indices)
-    files = write_findings(found, out, distortion=not cover.projected)
-    shown: MappingProxyType[str, tuple[str, Picture]] = MappingProxyType({})
-    if not cover.projected:
-        shown = draw_findings(found, solution, camera, out, say)
-    say("render")
+    canvas = Canvas(solution=solution, camera=fitted_view(solution), out=out)
+    maps = draw_maps(assessment, canvas, progress, top=top, whole_shape=False)
+    write_elements(shells, wrinkles, out / ELEMENTS)
+    files = write_findings(assessment, out, distortion=not cover.projected)
+    distortion = () if cover.projected else draw_distortion(assessment, canvas, progress)
+    progress("render")
     rig = side_light(solution)
     quality = "T3" if len(solution.cover.faces) < _MANY else "T2"
-    pbr.render(solution, None, rig=rig, camera=camera, quality=quality).save(out / PICTURE)
+    pbr.render(solution, None, rig=rig, camera=canvas.camera, quality=quality).save(out / PICTURE)
     return DrawnState(
-        folder=out, cover=cover, findings=found, camera=camera, rig=rig, maps=maps,
-        distortion=shown, files=("elements.csv", *files), quality=quality,
+        folder=out, cover=cover, assessment=assessment, camera=canvas.camera, rig=rig, maps=maps,
+        distortion=distortion, files=(ELEMENTS, *files), quality=quality,
     )  # fmt: skip
-
-
-def on_faces(indices: WrinkleMap, cover: ShellCover) -> WrinkleMap:
-    """Give each triangle the indices of its shell."""
-    return WrinkleMap(**{f.name: getattr(indices, f.name)[cover.element] for f in fields(indices)})
 
 
 def write_elements(shells: Shells, wrinkles: ShellWrinkles, path: Path) -> None:

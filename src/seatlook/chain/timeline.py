@@ -13,10 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook import io
-from seatlook._version import __version__
 from seatlook.errors import InputError, did_you_mean
 from seatlook.model import Anchor, Cover, FloatArray, Solution, Stage, Stitching, stage_units
-from seatlook.solver import solve
+from seatlook.solver import SETTINGS, solve
 from seatlook.solver.solve import Progress
 
 # What adds up over the calls of the solver.
@@ -117,8 +116,14 @@ def joined(start: Solution | None, after: Solution) -> Solution:
     figures = dict(after.figures)
     for name in _ADDED:
         figures[name] += start.figures[name]
+    settings = after.settings
+    if start.cover.scene_digest != after.cover.scene_digest:
+        settings += ", begun with another scene"  # so that it never stands for solving this one
     return dataclasses.replace(
-        after, history=MappingProxyType(history), figures=MappingProxyType(figures)
+        after,
+        history=MappingProxyType(history),
+        figures=MappingProxyType(figures),
+        settings=settings,
     )
 
 
@@ -136,9 +141,9 @@ def _snapshots(cover: Cover, folder: Path) -> Iterator[Solution]:
 
 
 def _last_of(cover: Cover, folder: Path) -> Solution | None:
-    """Return the last state that is of this very cover and this version."""
+    """Return the last state that is of this very cover and solver."""
     for state in _snapshots(cover, folder):
-        if state.version == __version__ and _same(state.cover, cover):
+        if state.settings == SETTINGS and _same(state.cover, cover):
             return state
     return None
 

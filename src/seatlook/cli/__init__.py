@@ -1,14 +1,17 @@
 """The command line: ``seatlook demo | check | evaluate | ...``."""
 
 from seatlook.cli import (
+    _check,
     _compare,
     _demo,
+    _evaluate,
+    _flatten,
     _init,
     _jury,
     _machine,
     _making,
     _precision,
-    _run,
+    _render,
     _score,
     _shape,
     _solve,
@@ -20,10 +23,10 @@ from seatlook.cli._app import app, main, run
 __all__ = ["app", "main", "run"]
 
 app.command(_demo.demo)
-app.command(_demo.flatten)
+app.command(_flatten.flatten)
 app.command(_init.init)
-app.command(_run.check)
-app.command(_run.evaluate)
+app.command(_check.check)
+app.command(_evaluate.evaluate)
 app.command(_solve.solve)
 app.command(_making.timeline)
 app.command(_making.hooks)
@@ -32,7 +35,7 @@ app.command(_precision.precision)
 app.command(_wrinkle.wrinkle)
 app.command(_compare.compare)
 app.command(_sweep.sweep)
-app.command(_run.render)
+app.command(_render.render)
 app.command(_machine.materials)
 app.command(_machine.doctor)
 app.command(_score.score)

@@ -8,8 +8,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from seatlook.cli._options import Changes, DryRun, Out, Scored, SingleFile, seat_of
 from seatlook.cli._output import Json, note, progress, say, table
-from seatlook.cli._run import Changes, DryRun, Out, Scored, SingleFile, load
 from seatlook.errors import InputError
 
 
@@ -37,36 +37,44 @@ def compare(
     result
         NAME=RESULT.npz: take this result of the scene called NAME; may be given more than once.
     """
+    from seatlook.chain.run_folder import run_folder
     from seatlook.comparison.compare import compare as run_compare
     from seatlook.comparison.compare import variant_names
+    from seatlook.comparison.visibility import score_variants
     from seatlook.pbr import offscreen_backend
     from seatlook.report.comparison_page import write_comparison
 
     if len(scenes) < 2:
         raise InputError.single("scenes", got=len(scenes), expected="two or more")
-    read = [load(path, changes=changes) for path in scenes]
-    names = variant_names(read)
+    seats = [seat_of(path, changes=changes) for path in scenes]
+    names = variant_names(seats)
     if dry_run:
+        first = seats[0].scene
         cells = [
             (name, texture, rig.name)
             for name in names
-            for texture in read[0].textures
-            for rig in read[0].rigs
+            for texture in first.textures
+            for rig in first.rigs
         ]
         table(("variant", "texture", "rig"), cells, json=json)
         return 0
     offscreen_backend()
-    with progress() as show:
-        comparison = run_compare(read, results=_results(result, names), keep=out, progress=show)
-        scores = comparison.visibility(show) if score else None
+    for seat in seats:
+        seat.check()
+    variants = dict(zip(names, seats, strict=True))
+    with run_folder(out, page=True), progress() as show:
+        comparison = run_compare(variants, results=_results(result, names), keep=out, progress=show)
+        scores = score_variants(comparison, show) if score else None
         page = write_comparison(
             comparison, out, scores=scores, single_file=single_file, progress=show
         )
-    found = comparison.table()
-    table(found.heads, found.rows, json=json)
+    differences = comparison.table()
+    table(differences.heads, differences.rows, json=json)
     note(f"gallery: {page}")
-    bad = [v for v in comparison.variants.values() if v.solution.status != "converged"]
-    say(*(f"{v.name}: not converged: {v.solution.reason}" for v in bad))
+    bad = {
+        n: c.solution for n, c in comparison.variants.items() if c.solution.status != "converged"
+    }
+    say(*(f"{name}: not converged: {solution.reason}" for name, solution in bad.items()))
     return 3 if bad else 0
 
 

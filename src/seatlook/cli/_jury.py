@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
+from seatlook.cli._options import Names, solved_seat
 from seatlook.cli._output import Json, progress, say, show_json, table
-from seatlook.cli._run import Names, camera_of, load, narrowed, result_of
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ def _covers(
     from seatlook.jury.stimuli import jury_view
 
     for path in scenes:
-        scene = narrowed(load(path), textures, rigs)
-        solution, folder = result_of(scene, path.with_name("result.npz")), path.parent.name
+        seat, folder = solved_seat(path), path.parent.name
+        scene = seat.narrowed(textures, rigs)
         name = f"{scene.name} ({folder})" if len(scenes) > 1 and folder else scene.name
-        yield name, scene, jury_view(solution, camera_of(scene, view), width=width)
+        yield name, scene, jury_view(seat.solution, seat.camera(view), width=width)

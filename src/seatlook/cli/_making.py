@@ -8,14 +8,14 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from seatlook.cli._options import Out, ResultFile, SceneFile, result_file, result_of, solved_seat
 from seatlook.cli._output import Json, say, table
-from seatlook.cli._run import Out, ResultFile, SceneFile, load, result_of
-from seatlook.errors import InputError, did_you_mean
+from seatlook.errors import InputError
 
 
 def timeline(
     scene: SceneFile,
-    result: ResultFile,
+    result: ResultFile = None,
     /,
     *,
     out: Out,
@@ -42,32 +42,20 @@ def timeline(
     seconds
         How long the animation lasts.
     """
-    from seatlook.chain.film import film
+    from seatlook.chain.run_folder import run_folder
     from seatlook.pbr import offscreen_backend
 
     offscreen_backend()
-    read = load(scene)
-    rigs = {r.name: r for r in read.rigs}
-    cameras = {camera.name: camera for camera in read.cameras}
-    for option, name, known in (("--rig", rig, rigs), ("--view", view, cameras)):
-        if name is not None and name not in known:
-            expected = f"one of {', '.join(known)}"
-            hint = did_you_mean(name, known)
-            raise InputError.single(option, got=repr(name), expected=expected, hint=hint)
-    paths = film(
-        result_of(read, result),
-        result.with_suffix(".stages"),
-        out,
-        rig=rigs[rig] if rig else None,
-        camera=cameras[view] if view else read.cameras[0],
-        width=width,
-        seconds=seconds,
-    )
+    seat, path = solved_seat(scene, result), result_file(scene, result)
+    with run_folder(out):
+        paths = seat.timeline(
+            path.with_suffix(".stages"), out, rig=rig, camera=view, width=width, seconds=seconds
+        )
     say(*(f"wrote {path}" for path in paths))
 
 
 def hooks(
-    result: ResultFile,
+    file: Annotated[Path, Parameter(help="Result file (.npz), or the scene it lies beside.")],
     /,
     *,
     csv: Annotated[Path | None, Parameter(help="File for the table as CSV.")] = None,
@@ -80,6 +68,7 @@ def hooks(
     from seatlook import io
     from seatlook.results.ring_pulls import RingPull, overpulled, ring_pulls
 
+    result = result_of(file)
     solution = io.read_result(result)
     rings = ring_pulls(solution)
     if not rings and any(anchor.kind == "hook" for anchor in solution.cover.anchors):

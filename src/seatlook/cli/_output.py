@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import json as json_module
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Protocol
+from typing import Annotated, Any, Protocol
 
 from cyclopts import Parameter
-
-if TYPE_CHECKING:
-    from jinja2 import Template
 
 Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, not a table.")]
 
@@ -41,6 +37,13 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[Any]], *, json: bool) ->
     for row in cells:
         line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         sys.stdout.write(line.rstrip() + "\n")
+
+
+def print_rows(rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print a further table, after an empty line; nothing where there is none."""
+    if rows:
+        sys.stdout.write("\n")
+        table(tuple(rows[0]), [tuple(row.values()) for row in rows], json=False)
 
 
 def show_json(data: Any) -> None:
@@ -108,21 +111,6 @@ def progress() -> Iterator[Say]:
             )
 
         yield show
-
-
-def template(name: str) -> Template:
-    """Load a text template of this folder; ``| toml`` spells a value as a TOML string."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=False,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["toml"] = json_module.dumps
-    return environment.get_template(name)
 
 
 def _text(cell: Any) -> str:

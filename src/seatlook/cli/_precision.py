@@ -7,9 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from seatlook.cli._options import SceneFile, Seed, checked_result_name, exit_code_of, seat_of
 from seatlook.cli._output import Json, progress, say, table
-from seatlook.cli._run import SceneFile, Seed, load
-from seatlook.errors import InputError
 
 
 def precision(
@@ -34,25 +33,19 @@ def precision(
         Relative error of the zone means of W2.
     """
     from seatlook import io
-    from seatlook.chain.precision import solve_to
 
-    if out is not None and out.suffix != ".npz":
-        raise InputError.single("--out", got=out.name, expected="a name that ends in .npz")
-    with progress() as show:
-        found = solve_to(
-            load(scene, seed), tolerance, progress=lambda **figures: show("solve", **figures)
-        )
     if out is not None:
-        io.write_result(found.solution, out)
+        checked_result_name(out)
+    with progress() as show:
+        precise = seat_of(scene, seed).precision(tolerance, progress=show)
+    if out is not None:
+        io.write_result(precise.solution, out)
     table(
         ("zone", "w2_mean", "error"),
-        [(zone.zone, zone.w2_mean, zone.error) for zone in found.zones],
+        [(zone.zone, zone.w2_mean, zone.error) for zone in precise.zones],
         json=json,
     )
-    size, wave = 1e3 * found.plan.element_size, 1e3 * found.plan.wavelength
+    size, wave = 1e3 * precise.plan.element_size, 1e3 * precise.plan.wavelength
     say(f"elements of {size:.3g} mm, {wave / size:.3g} to a wave of {wave:.3g} mm; "
-        f"error {found.error:.2g}, asked for {tolerance:.2g}")  # fmt: skip
-    for solution in (found.solution, found.coarse):
-        if solution.reason:
-            say(f"not converged: {solution.reason}")
-    return 0 if found.reached else 3
+        f"error {precise.error:.2g}, asked for {tolerance:.2g}")  # fmt: skip
+    return exit_code_of(precise.solution, precise.coarse) or (0 if precise.reached else 3)

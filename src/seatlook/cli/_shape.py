@@ -7,14 +7,13 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from seatlook.cli._options import ResultFile, SceneFile, solved_seat
 from seatlook.cli._output import Json, note, table
-from seatlook.cli._run import ResultFile, SceneFile, camera_of, load, result_of
-from seatlook.errors import InputError
 
 
 def shape(
     scene: SceneFile,
-    result: ResultFile,
+    result: ResultFile = None,
     /,
     *,
     seams: Annotated[bool, Parameter(negative=())] = False,
@@ -35,23 +34,18 @@ def shape(
     view
         Camera of the scene for the map. The first if not given.
     """
-    from seatlook.chain.evaluation import draw_distance, seam_line_rows, shape_rows, write_shape
-    from seatlook.results.deviation import deviation, seam_lines
-    from seatlook.results.gap import zone_gaps
+    from seatlook.chain.draw import Canvas, draw_distance
+    from seatlook.chain.evaluation import DEVIATION
+    from seatlook.chain.files import gap_rows, seam_line_rows, write_shape
 
-    read = load(scene)
-    if read.design is None:
-        raise InputError.single(
-            "design", got="nothing", expected="a table [design] with a file", file=read.path
-        )
-    camera, solution = camera_of(read, view), result_of(read, result)
-    off = deviation(solution, read.design)
+    seat = solved_seat(scene, result)
+    assessment, solution = seat.assessment, seat.solution
+    zones = seat.shape()
+    rows = seam_line_rows(assessment.seam_lines) if seams else gap_rows(zones)
     if out is not None:
-        write_shape(solution, read.design, off, out)
-        note(f"map: {out / draw_distance('deviation', solution, off, camera, out)[0]}")
-    rows = (
-        seam_line_rows(seam_lines(solution, read.design))
-        if seams
-        else shape_rows(zone_gaps(solution, off))
-    )
+        write_shape(assessment, out)
+        run = solution.cover.scene_digest
+        canvas = Canvas(solution=solution, camera=seat.camera(view), out=out, run=run)
+        drawn = draw_distance("deviation", assessment.deviation, canvas, DEVIATION)
+        note(f"map: {out / drawn.path}")
     table(list(rows[0]) if rows else (), [tuple(row.values()) for row in rows], json=json)

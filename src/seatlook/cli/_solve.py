@@ -7,19 +7,29 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from seatlook.cli._options import (
+    Changes,
+    ElementSize,
+    ResultOut,
+    SceneFile,
+    Seed,
+    checked_result_name,
+    exit_code_of,
+    seat_of,
+)
 from seatlook.cli._output import Json, Say, note, progress, table
-from seatlook.cli._run import Changes, ElementSize, SceneFile, Seed, exit_code_of, load
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.model import Cover, Solution
+    from seatlook.model import Solution
+    from seatlook.seat import Seat
 
 
 def solve(
     scene: SceneFile,
     /,
     *,
-    out: Annotated[Path, Parameter(help="Result file to write (.npz).")],
+    out: ResultOut,
     seed: Seed = None,
     element_size_mm: ElementSize = None,
     changes: Changes = (),
@@ -48,48 +58,53 @@ def solve(
         Go on after the last stage kept of this very scene, so that a run that was stopped ends as
         if it had not been. Keeps stages.
     """
-    from seatlook import io
-    from seatlook.assembly import assemble
-
-    if out.suffix != ".npz":
-        raise InputError.single("--out", got=out.name, expected="a name that ends in .npz")
+    checked_result_name(out)
     if again_from is not None and resume:
         raise InputError.single("--from", got="--resume as well", expected="one of them")
-    cover = assemble(load(scene, seed, element_size_mm, changes))
+    seat = seat_of(scene, seed, element_size_mm, changes)
     with progress() as show:
         if stages or resume or again_from is not None:
-            solution = _in_stages(cover, out.with_suffix(".stages"), again_from, resume, show)
-        else:
-            from seatlook.solver import solve as run_solver
-
-            solution = run_solver(cover, progress=lambda **figures: show("solve", **figures))
-    io.write_result(solution, out)
-    table(
-        ("what", "value"),
-        [("status", solution.status), ("reason", solution.reason), *solution.figures.items()],
-        json=json,
-    )
+            _in_stages(seat, out.with_suffix(".stages"), again_from, resume, show)
+        seat.solve(out, progress=show)
+    solution = seat.solution
+    if json:
+        rows = [("status", solution.status), ("reason", solution.reason)]
+        table(("what", "value"), [*rows, *solution.figures.items()], json=True)
+    else:
+        _print_summary(solution)
     return exit_code_of(solution)
 
 
-def _in_stages(
-    cover: Cover, folder: Path, again_from: str | None, resume: bool, show: Say
-) -> Solution:
+def _print_summary(solution: Solution) -> None:
+    """Print status and reason first, then what it was reached with, with units."""
+    from seatlook.model.table import number
+    from seatlook.results.conditions import conditions
+
+    cover = solution.cover
+    rows: list[tuple[str, str, str]] = [("status", solution.status, "")]
+    if solution.reason:
+        rows.append(("reason", solution.reason, ""))
+    for held in conditions(solution):
+        unit = f" {held.unit}" if held.unit else ""
+        limit = f"at most {number(held.limit)}{unit}"
+        rows.append((held.meaning, f"{number(held.value)}{unit}", limit))
+    rows += [
+        ("mesh", f"{len(cover.rest)} vertices, {1e3 * cover.element_size:.3g} mm", ""),
+        ("CPU time", f"{solution.figures['cpu_seconds']:.1f} s", ""),
+    ]
+    table(("what", "value", "limit"), rows, json=False)
+
+
+def _in_stages(seat: Seat, folder: Path, again_from: str | None, resume: bool, show: Say) -> None:
     """Solve and say on stderr with which stage it begins and where the stages are."""
-    from seatlook.chain.timeline import solve_in_stages
+    begun: set[str] = set()
 
-    seen: list[str] = []
-
-    def tell(
-        *, stage: str, step: int, steps: int, energy: float, residual: float, gap: float
-    ) -> None:
-        if stage not in seen:
-            seen.append(stage)
+    def tell(name: str, /, **figures: float | str) -> None:
+        stage = str(figures.get("stage", ""))
+        if stage and stage not in begun:
+            begun.add(stage)
             note(f"stage: {stage}")
-        show(
-            "solve", stage=stage, step=step, steps=steps, energy=energy, residual=residual, gap=gap
-        )
+        show(name, **figures)
 
-    solution = solve_in_stages(cover, folder, again_from=again_from, resume=resume, progress=tell)
+    seat.solve_in_stages(folder, again_from=again_from, resume=resume, progress=tell)
     note(f"stages: {folder}")
-    return solution

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from seatlook.cli._options import DryRun, Out
 from seatlook.cli._output import Json, note, progress, say, show_json, table
-from seatlook.cli._run import DryRun, Out
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import uuid
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from pathlib import Path
 from seatlook.errors import InputError
 from seatlook.files import write_bytes
 from seatlook.model.table import Table, number
+from seatlook.pbr.picture import img
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,11 +40,7 @@ class Cell:
 
     def img(self, style: str = "width:100%") -> str:
         """HTML of the picture, with its name for those who cannot see it."""
-        data = base64.b64encode(self.png).decode()
-        return (
-            f'<img alt="{escape(self.name, quote=True)}" style="{style}" '
-            f'src="data:image/png;base64,{data}">'
-        )
+        return img(self.png, self.name, style)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
+from seatlook.chain.case import Case
+from seatlook.comparison.compare import Comparison
 from seatlook.errors import InputError
+from seatlook.model.progress import Progress, silent
 from seatlook.model.table import Table
 from seatlook.visibility.grid import Grid, score_grid
 from seatlook.visibility.scoring import null_gate
 from seatlook.visibility.view import View
-
-if TYPE_CHECKING:
-    from seatlook.comparison.compare import Comparison, Variant
-    from seatlook.model.progress import Progress
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +57,7 @@ class VariantScores:
         return self.table()._repr_html_()
 
 
-def score_variants(comparison: Comparison, progress: Progress | None = None) -> VariantScores:
+def score_variants(comparison: Comparison, progress: Progress = silent) -> VariantScores:
     """Score every picture of a comparison; a variant that cannot be scored says why.
 
     Raises
@@ -69,8 +67,7 @@ def score_variants(comparison: Comparison, progress: Progress | None = None) -> 
     vwi: dict[tuple[str, str, str], float] = {}
     refused: dict[str, str] = {}
     for name, variant in comparison.variants.items():
-        if progress is not None:
-            progress("score", variant=name)
+        progress("score", variant=name)
         try:
             grid = _grid(comparison, variant)
         except InputError as error:
@@ -84,9 +81,9 @@ def score_variants(comparison: Comparison, progress: Progress | None = None) -> 
     )
 
 
-def _grid(comparison: Comparison, variant: Variant) -> Grid:
+def _grid(comparison: Comparison, variant: Case) -> Grid:
     """Score one variant; what it takes to look at it, up to 2 GB, is given back before the next."""
     scene = comparison.first.scene
     view = View(variant.solution, comparison.camera)
     null_gate(view, scene)
-    return score_grid(view, scene.textures, scene.rigs, indices=variant.indices)
+    return score_grid(view, scene.textures, scene.rigs, indices=variant.assessment.indices)

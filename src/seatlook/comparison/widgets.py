@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from seatlook.comparison.compare import Comparison
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
     from ipywidgets import Widget
-
-    from seatlook.comparison.compare import Comparison
 
 
 def sliders(comparison: Comparison) -> Widget:
@@ -40,14 +39,14 @@ def sliders(comparison: Comparison) -> Widget:
         for name, options in axes.items()
     }
     picture = ipywidgets.Image(format="png")
-    said = ipywidgets.Label()
+    caption = ipywidgets.Label()
 
     def draw(_change: Any = None) -> None:
         names = (choose["variant"].value, choose["texture"].value, choose["rig"].value)
         cell = comparison[names]
-        picture.value, said.value = cell.png, f"{cell.name}, EV {cell.ev100:.2f}"
+        picture.value, caption.value = cell.png, f"{cell.name}, EV {cell.ev100:.2f}"
 
     for slider in choose.values():
         slider.observe(draw, names="value")
     draw()
-    return ipywidgets.VBox([*choose.values(), said, picture])
+    return ipywidgets.VBox([*choose.values(), caption, picture])

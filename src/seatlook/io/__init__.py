@@ -2,51 +2,168 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import Any
+from typing import TYPE_CHECKING
 
-# name -> module
+from seatlook._door import door
+
+if TYPE_CHECKING:
+    from seatlook.io.curves import (
+        read_curves as read_curves,
+    )
+    from seatlook.io.curves import (
+        write_curves as write_curves,
+    )
+    from seatlook.io.export.film import (
+        read_shapes as read_shapes,
+    )
+    from seatlook.io.export.film import (
+        write_animation as write_animation,
+    )
+    from seatlook.io.export.film import (
+        write_shapes as write_shapes,
+    )
+    from seatlook.io.export.result import (
+        read_result as read_result,
+    )
+    from seatlook.io.export.result import (
+        write_result as write_result,
+    )
+    from seatlook.io.export.writers import (
+        export_cover as export_cover,
+    )
+    from seatlook.io.lsdyna.d3plot import (
+        read_d3plot as read_d3plot,
+    )
+    from seatlook.io.lsdyna.dynain import (
+        write_dynain as write_dynain,
+    )
+    from seatlook.io.lsdyna.keyword import (
+        read_keyword as read_keyword,
+    )
+    from seatlook.io.lsdyna.shells import (
+        read_shells as read_shells,
+    )
+    from seatlook.io.material import (
+        list_foam_materials as list_foam_materials,
+    )
+    from seatlook.io.material import (
+        list_materials as list_materials,
+    )
+    from seatlook.io.material import (
+        materials_dir as materials_dir,
+    )
+    from seatlook.io.material import (
+        read_foam_material as read_foam_material,
+    )
+    from seatlook.io.material import (
+        read_material as read_material,
+    )
+    from seatlook.io.mesh import (
+        read_foam as read_foam,
+    )
+    from seatlook.io.pattern.dxf import (
+        read_dxf as read_dxf,
+    )
+    from seatlook.io.pattern.dxf_write import (
+        write_dxf as write_dxf,
+    )
+    from seatlook.io.pattern.seams import (
+        read_panels as read_panels,
+    )
+    from seatlook.io.pattern.seams import (
+        read_pattern as read_pattern,
+    )
+    from seatlook.io.pattern.seams import (
+        write_seams as write_seams,
+    )
+    from seatlook.io.scene.read import (
+        load_scene as load_scene,
+    )
+    from seatlook.io.surface import (
+        GroupedMesh as GroupedMesh,
+    )
+    from seatlook.io.surface import (
+        read_surface as read_surface,
+    )
+    from seatlook.io.surface import (
+        write_obj as write_obj,
+    )
+    from seatlook.io.surface import (
+        write_surface as write_surface,
+    )
+    from seatlook.io.table import (
+        write_numbers as write_numbers,
+    )
+    from seatlook.io.table import (
+        write_table as write_table,
+    )
+
+# name -> module; loaded on first use, so that "seatlook --help" stays light.
 _PUBLIC: dict[str, str] = {
-    "GroupedMesh": "surface",
-    "export_cover": "export.writers",
-    "list_foam_materials": "material",
-    "list_materials": "material",
-    "load_scene": "scene.read",
-    "materials_dir": "material",
-    "read_curves": "curves",
-    "read_d3plot": "lsdyna.d3plot",
-    "read_dxf": "pattern.dxf",
-    "read_foam": "mesh",
-    "read_foam_material": "material",
-    "read_keyword": "lsdyna.keyword",
-    "read_material": "material",
-    "read_panels": "pattern.seams",
-    "read_pattern": "pattern.seams",
-    "read_result": "export.result",
-    "read_shapes": "export.film",
-    "read_shells": "lsdyna.shells",
-    "read_surface": "surface",
-    "write_animation": "export.film",
-    "write_curves": "curves",
-    "write_dxf": "pattern.dxf_write",
-    "write_dynain": "lsdyna.dynain",
-    "write_numbers": "table",
-    "write_obj": "surface",
-    "write_result": "export.result",
-    "write_seams": "pattern.seams",
-    "write_shapes": "export.film",
-    "write_surface": "surface",
-    "write_table": "table",
+    "GroupedMesh": "seatlook.io.surface",
+    "export_cover": "seatlook.io.export.writers",
+    "list_foam_materials": "seatlook.io.material",
+    "list_materials": "seatlook.io.material",
+    "load_scene": "seatlook.io.scene.read",
+    "materials_dir": "seatlook.io.material",
+    "read_curves": "seatlook.io.curves",
+    "read_d3plot": "seatlook.io.lsdyna.d3plot",
+    "read_dxf": "seatlook.io.pattern.dxf",
+    "read_foam": "seatlook.io.mesh",
+    "read_foam_material": "seatlook.io.material",
+    "read_keyword": "seatlook.io.lsdyna.keyword",
+    "read_material": "seatlook.io.material",
+    "read_panels": "seatlook.io.pattern.seams",
+    "read_pattern": "seatlook.io.pattern.seams",
+    "read_result": "seatlook.io.export.result",
+    "read_shapes": "seatlook.io.export.film",
+    "read_shells": "seatlook.io.lsdyna.shells",
+    "read_surface": "seatlook.io.surface",
+    "write_animation": "seatlook.io.export.film",
+    "write_curves": "seatlook.io.curves",
+    "write_dxf": "seatlook.io.pattern.dxf_write",
+    "write_dynain": "seatlook.io.lsdyna.dynain",
+    "write_numbers": "seatlook.io.table",
+    "write_obj": "seatlook.io.surface",
+    "write_result": "seatlook.io.export.result",
+    "write_seams": "seatlook.io.pattern.seams",
+    "write_shapes": "seatlook.io.export.film",
+    "write_surface": "seatlook.io.surface",
+    "write_table": "seatlook.io.table",
 }
 
-__all__ = list(_PUBLIC)
+__all__ = [
+    "GroupedMesh",
+    "export_cover",
+    "list_foam_materials",
+    "list_materials",
+    "load_scene",
+    "materials_dir",
+    "read_curves",
+    "read_d3plot",
+    "read_dxf",
+    "read_foam",
+    "read_foam_material",
+    "read_keyword",
+    "read_material",
+    "read_panels",
+    "read_pattern",
+    "read_result",
+    "read_shapes",
+    "read_shells",
+    "read_surface",
+    "write_animation",
+    "write_curves",
+    "write_dxf",
+    "write_dynain",
+    "write_numbers",
+    "write_obj",
+    "write_result",
+    "write_seams",
+    "write_shapes",
+    "write_surface",
+    "write_table",
+]
 
-
-def __getattr__(name: str) -> Any:
-    if name in _PUBLIC:
-        return getattr(importlib.import_module(f"seatlook.io.{_PUBLIC[name]}"), name)
-    raise AttributeError(f"module 'seatlook.io' has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return [*globals(), *_PUBLIC]
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = door(__name__, _PUBLIC)

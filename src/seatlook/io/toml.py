@@ -107,6 +107,18 @@ def quoted(text: str) -> str:
     return f'"{escaped}"'
 
 
+def toml_key(name: str) -> str:
+    """Spell a name as one part of a TOML key: bare where it may be.
+
+    Examples
+    --------
+    >>> toml_key("INSERT"), toml_key("my insert")
+    ('INSERT', '"my insert"')
+    """
+    bare = name.isascii() and name.replace("-", "").replace("_", "").isalnum()
+    return name if bare else quoted(name)
+
+
 def read_document(path: Path) -> Document:
     """Read and parse a TOML file.
 

@@ -1,25 +1,96 @@
 """Triangle meshes as plain arrays; no core types, so that every other layer may use it."""
 
-from seatlook.mesh.intersection import intersecting_pairs
-from seatlook.mesh.outline import (
-    MAX_HEXAGONAL_BIAS,
-    MIN_ANGLE_DEG,
-    QUANTILE_ANGLE_DEG,
-    triangulate,
-)
-from seatlook.mesh.polyline import arc_length, length, nearest_place, resample, segment_lengths
-from seatlook.mesh.surface import (
-    angles,
-    boundary_loops,
-    boundary_sides,
-    edge_lengths,
-    edges,
-    face_areas,
-    face_normals,
-    face_vectors,
-    hexagonal_bias,
-    vertex_normals,
-)
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from seatlook._door import door
+
+if TYPE_CHECKING:
+    from seatlook.mesh.intersection import (
+        intersecting_pairs as intersecting_pairs,
+    )
+    from seatlook.mesh.outline import (
+        MAX_HEXAGONAL_BIAS as MAX_HEXAGONAL_BIAS,
+    )
+    from seatlook.mesh.outline import (
+        MIN_ANGLE_DEG as MIN_ANGLE_DEG,
+    )
+    from seatlook.mesh.outline import (
+        QUANTILE_ANGLE_DEG as QUANTILE_ANGLE_DEG,
+    )
+    from seatlook.mesh.outline import (
+        triangulate as triangulate,
+    )
+    from seatlook.mesh.polyline import (
+        arc_length as arc_length,
+    )
+    from seatlook.mesh.polyline import (
+        length as length,
+    )
+    from seatlook.mesh.polyline import (
+        nearest_place as nearest_place,
+    )
+    from seatlook.mesh.polyline import (
+        resample as resample,
+    )
+    from seatlook.mesh.polyline import (
+        segment_lengths as segment_lengths,
+    )
+    from seatlook.mesh.surface import (
+        angles as angles,
+    )
+    from seatlook.mesh.surface import (
+        boundary_loops as boundary_loops,
+    )
+    from seatlook.mesh.surface import (
+        boundary_sides as boundary_sides,
+    )
+    from seatlook.mesh.surface import (
+        edge_lengths as edge_lengths,
+    )
+    from seatlook.mesh.surface import (
+        edges as edges,
+    )
+    from seatlook.mesh.surface import (
+        face_areas as face_areas,
+    )
+    from seatlook.mesh.surface import (
+        face_normals as face_normals,
+    )
+    from seatlook.mesh.surface import (
+        face_vectors as face_vectors,
+    )
+    from seatlook.mesh.surface import (
+        hexagonal_bias as hexagonal_bias,
+    )
+    from seatlook.mesh.surface import (
+        vertex_normals as vertex_normals,
+    )
+
+# name -> module; SciPy and Shapely are loaded by what needs them.
+_PUBLIC: dict[str, str] = {
+    "MAX_HEXAGONAL_BIAS": "seatlook.mesh.outline",
+    "MIN_ANGLE_DEG": "seatlook.mesh.outline",
+    "QUANTILE_ANGLE_DEG": "seatlook.mesh.outline",
+    "angles": "seatlook.mesh.surface",
+    "arc_length": "seatlook.mesh.polyline",
+    "boundary_loops": "seatlook.mesh.surface",
+    "boundary_sides": "seatlook.mesh.surface",
+    "edge_lengths": "seatlook.mesh.surface",
+    "edges": "seatlook.mesh.surface",
+    "face_areas": "seatlook.mesh.surface",
+    "face_normals": "seatlook.mesh.surface",
+    "face_vectors": "seatlook.mesh.surface",
+    "hexagonal_bias": "seatlook.mesh.surface",
+    "intersecting_pairs": "seatlook.mesh.intersection",
+    "length": "seatlook.mesh.polyline",
+    "nearest_place": "seatlook.mesh.polyline",
+    "resample": "seatlook.mesh.polyline",
+    "segment_lengths": "seatlook.mesh.polyline",
+    "triangulate": "seatlook.mesh.outline",
+    "vertex_normals": "seatlook.mesh.surface",
+}
 
 __all__ = [
     "MAX_HEXAGONAL_BIAS",
@@ -43,3 +114,6 @@ __all__ = [
     "triangulate",
     "vertex_normals",
 ]
+
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = door(__name__, _PUBLIC)

@@ -9,9 +9,12 @@ from seatlook.model.cover import (
     Solution,
     Stage,
     Stitching,
+    Strains,
     WrinkleMap,
     stage_units,
 )
+from seatlook.model.criteria import Criteria, CurvatureMode, StrainMeasure, criteria_of
+from seatlook.model.field import Field
 from seatlook.model.light import (
     LIGHTS,
     VIEWS,
@@ -26,7 +29,7 @@ from seatlook.model.light import (
 )
 from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
-from seatlook.model.scene import Design, Frame, Hook, Limit, Pose, Scene, ZoneBox
+from seatlook.model.scene import Design, Frame, Hook, Limit, Pose, Scene, Verdict, ZoneBox
 from seatlook.model.shells import ShellResult, Shells, ShellState
 from seatlook.model.texture import TextureMaps
 from seatlook.model.thread import Thread
@@ -38,10 +41,13 @@ __all__ = [
     "Appearance",
     "Camera",
     "Cover",
+    "Criteria",
+    "CurvatureMode",
     "Curve",
     "Design",
     "Edge",
     "Fabric",
+    "Field",
     "FloatArray",
     "Foam",
     "FoamMaterial",
@@ -66,12 +72,16 @@ __all__ = [
     "Solution",
     "Stage",
     "Stitching",
+    "StrainMeasure",
+    "Strains",
     "TextureMaps",
     "Thread",
+    "Verdict",
     "WrinkleMap",
     "ZoneBox",
     "booth",
     "bulb",
+    "criteria_of",
     "direction",
     "named_view",
     "stage_units",

@@ -12,6 +12,7 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model._check import FloatArray, IntArray, floats, ints
+from seatlook.model.criteria import Criteria
 from seatlook.model.material import Foam, Material
 from seatlook.model.thread import Thread
 
@@ -206,7 +207,7 @@ def stage_units(stages: Sequence[Stage]) -> list[str]:
     return units
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Cover:
     """All panels meshed and placed, with what will pull on them.
 
@@ -219,6 +220,8 @@ class Cover:
     panel : (m,) int64            index into ``panel_names`` and ``materials``
     zone : (m,) int64             index into ``zone_names``
     element_size : float [m]      mean edge length h
+    criteria : how it is assessed: the scene's mode, and the thresholds of its panels
+    scene_digest : of everything that it was made from, see ``assembly.digest``
     """
 
     rest: FloatArray
@@ -236,6 +239,7 @@ class Cover:
     stages: tuple[Stage, ...] = ()
     foam: Foam | None = None
     thread: Thread = field(default_factory=Thread)
+    criteria: Criteria | None = None
     element_size: float
     seed: int = 0
     scene_digest: str = ""
@@ -261,6 +265,12 @@ class Cover:
                 expected=f"{m} and {n}",
             )
 
+    def __repr__(self) -> str:
+        return (
+            f"Cover({len(self.panel_names)} panels, {len(self.rest)} vertices, "
+            f"h {1e3 * self.element_size:.3g} mm)"
+        )
+
     @property
     def thickness(self) -> FloatArray:
         """Thickness t per face, (m,) [m]."""
@@ -275,6 +285,23 @@ class Cover:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Strains:
+    """In-plane strains of elements on both surfaces and in the middle, each (m, 2, 2) float64.
+
+    Parameters
+    ----------
+    thickness : (m,) float64 [m]
+    panel : (m,) int64    which threshold counts for each
+    """
+
+    top: FloatArray
+    mid: FloatArray
+    bottom: FloatArray
+    thickness: FloatArray
+    panel: IntArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Solution:
     """The solved cover; everything needed to restart it, map it or draw it.
 
@@ -290,6 +317,7 @@ class Solution:
         largest strains so far along warp and weft, -inf = none, of fabrics that unload another way
     history : column -> (k,), one row per step: time, energy, residual, gap, iterations, ...
     figures : name -> final value, e.g. "seam_gap_max" [m], "residual" [1], "cpu_seconds"
+    settings : how it was solved: revision of the solver, method, time step
     """
 
     cover: Cover
@@ -309,6 +337,7 @@ class Solution:
     reason: str = ""
     history: MappingProxyType[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
     figures: MappingProxyType[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    settings: str = ""
     version: str = ""
 
     def __post_init__(self) -> None:
@@ -320,6 +349,21 @@ class Solution:
         floats(self, "friction_anchor", n, 3, finite=False)
         if self.strain_peak is not None:
             floats(self, "strain_peak", m, 2, finite=False)
+
+    def __repr__(self) -> str:
+        reason = f": {self.reason}" if self.reason else ""
+        return f"Solution({self.cover!r}, {self.stage}, {self.status}{reason})"
+
+    @property
+    def strains(self) -> Strains:
+        """Green strains in warp/weft axes, with the thickness and the panel of each face."""
+        return Strains(
+            top=self.strain_top,
+            mid=self.strain_mid,
+            bottom=self.strain_bottom,
+            thickness=self.cover.thickness,
+            panel=self.cover.panel,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

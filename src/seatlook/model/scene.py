@@ -12,19 +12,13 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.model._check import FloatArray, IntArray, floats, ints, positive
 from seatlook.model.cover import Stage
+from seatlook.model.criteria import CurvatureMode
 from seatlook.model.light import Camera, Rig
 from seatlook.model.material import Appearance, Foam, Material
 from seatlook.model.pattern import Pattern
 from seatlook.model.thread import Thread
 
-CurvatureMode = Literal["paper", "tensor"]
-
-# What [accept] can limit: fields of a zone's row in the table of wrinkle indices.
-MEASURES = (
-    "w2_mean", "w2_p95", "w2_area_share", "w_stretch_mean", "w_compression_mean",
-    "w2_net_mean", "w2_net_p95", "w2_net_area_share",
-)  # fmt: skip
-# And what the score of a zone gives, worst over all textures and rigs.
+# What [accept] can limit besides the figures of a zone: its worst score over textures and rigs.
 SCORE_MEASURES = ("vwi", "equivalent_height_mm")
 
 
@@ -144,7 +138,7 @@ class Design:
         ints(self, "panel", len(self.faces), below=len(self.panel_names))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Scene:
     """Everything a run needs, checked and in SI units.
 
@@ -152,7 +146,7 @@ class Scene:
     ----------
     digest : sha256 of the scene file and of every file it names
     materials : panel name -> Material
-    placement : panel name -> Pose; a panel without one gets an automatic pose
+    placement : panel name -> Pose; a panel without one is laid out over the foam
     design : what the finished shape is compared with, if given
     hem : whether seam allowances are folded inward; if not, seams are free hinges
     element_sizes : panel name -> float [m]     of panels that are meshed finer or coarser
@@ -192,6 +186,13 @@ class Scene:
 
     def __post_init__(self) -> None:
         positive(self, "element_size", "c_threshold")
+
+    def __repr__(self) -> str:
+        return (
+            f"Scene({self.name!r}: {len(self.pattern.panels)} panels, "
+            f"{len(self.pattern.seams)} seams, {len(self.textures)} textures, "
+            f"{len(self.rigs)} rigs)"
+        )
 
     def stage_of(self, seam: str) -> Stage:
         """Return the stage in which a seam closes: the one that names it, else the first."""

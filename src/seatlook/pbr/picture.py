@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import base64
 import io
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
 from PIL import Image as Pillow
+from PIL.PngImagePlugin import PngInfo
 
 from seatlook.errors import InputError
 from seatlook.exr import write_exr
 from seatlook.files import write_bytes
 from seatlook.model import Camera, FloatArray
 from seatlook.pbr.light.exposure import Radiance, to_display
+
+RUN_KEY = "seatlook run"  # of the text in a PNG that names the run
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,11 +49,11 @@ class Image:
         """Eight-bit sRGB (h, w, 3) at this exposure."""
         return to_display(self.radiance, self.ev100, white=self.white, tone=self.tone)
 
-    def to_png(self) -> bytes:
-        """PNG file content."""
-        return png(self.to_srgb())
+    def to_png(self, run: str = "") -> bytes:
+        """PNG file content; ``run`` names the run that it belongs to, in a text of the file."""
+        return png(self.to_srgb(), run)
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path, *, run: str = "") -> None:
         """Write ``.png`` (display), ``.npy`` or, with the extra ``[exr]``, ``.exr`` (radiance).
 
         Raises
@@ -57,7 +62,7 @@ class Image:
             Another file ending, or no extra.
         """
         if path.suffix == ".png":
-            write_bytes(path, self.to_png())
+            write_bytes(path, self.to_png(run))
         elif path.suffix == ".npy":
             buffer = io.BytesIO()
             np.save(buffer, self.radiance, allow_pickle=False)
@@ -79,11 +84,11 @@ class Picture:
     pixels: npt.NDArray[np.uint8]
     value_range: tuple[float, float]
 
-    def to_png(self) -> bytes:
-        """PNG file content."""
-        return png(self.pixels)
+    def to_png(self, run: str = "") -> bytes:
+        """PNG file content; ``run`` names the run that it belongs to, in a text of the file."""
+        return png(self.pixels, run)
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path, *, run: str = "") -> None:
         """Write a ``.png`` file.
 
         Raises
@@ -93,14 +98,26 @@ class Picture:
         """
         if path.suffix != ".png":
             raise InputError.single("picture file", got=path.name, expected="a .png name")
-        write_bytes(path, self.to_png())
+        write_bytes(path, self.to_png(run))
 
     def _repr_png_(self) -> bytes:
         return self.to_png()
 
 
-def png(pixels: npt.NDArray[np.uint8]) -> bytes:
-    """PNG content of (h, w, 3) uint8 sRGB pixels, the same bytes for the same pixels."""
+def png(pixels: npt.NDArray[np.uint8], run: str = "") -> bytes:
+    """PNG content of (h, w, 3) uint8 sRGB pixels, the same bytes for the same pixels and run."""
     buffer = io.BytesIO()
-    Pillow.fromarray(pixels).save(buffer, format="PNG", compress_level=6)
+    about = None
+    if run:
+        about = PngInfo()
+        about.add_text(RUN_KEY, run)
+    Pillow.fromarray(pixels).save(buffer, format="PNG", compress_level=6, pnginfo=about)
     return buffer.getvalue()
+
+
+def img(content: bytes, name: str, style: str = "width:100%") -> str:
+    """HTML of a PNG picture, with its name for those who cannot see it."""
+    data = base64.b64encode(content).decode()
+    return (
+        f'<img alt="{escape(name, quote=True)}" style="{style}" src="data:image/png;base64,{data}">'
+    )

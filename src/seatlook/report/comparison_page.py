@@ -9,19 +9,19 @@ from types import MappingProxyType
 
 from seatlook import files
 from seatlook._version import __version__
-from seatlook.chain.evaluation import MAPS, label, picture_path
-from seatlook.chain.findings import find
+from seatlook.chain.draw import map_ends
 from seatlook.comparison.compare import Comparison
 from seatlook.comparison.visibility import VariantScores
-from seatlook.model.progress import Progress
+from seatlook.files import file_names
+from seatlook.model.progress import Progress, silent
 from seatlook.model.table import Table, number
 from seatlook.report.page.data import PageData
 from seatlook.report.page.types import Check, MapView, ScoreSection, Spot, WrinkleSection
 from seatlook.report.page.write import write_page
-from seatlook.report.sections.in_short import above_one
 from seatlook.report.sections.parameters import parameter_tables, parameter_toml
 from seatlook.report.sections.rigs import rig_head
 from seatlook.report.sections.wrinkles import section_of
+from seatlook.wrinkle import INDICES
 
 _TABLES = {
     "W2 mean": "w2_mean",
@@ -40,7 +40,7 @@ def write_comparison(
     *,
     scores: VariantScores | None = None,
     single_file: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = silent,
 ) -> Path:
     """Draw every cell and map into ``folder`` and write its ``index.html``.
 
@@ -66,7 +66,7 @@ def write_comparison(
         maps=tuple(_maps(comparison, folder)),
         zones=_zones(comparison, "w2_p95"),
         differences=_differences(comparison, scores),
-        baseline=comparison.first.name,
+        baseline=comparison.baseline,
         wrinkles=wrinkles,
         spots=wrinkles.spots,
         summary=tuple(_summary(comparison, scores)),
@@ -99,19 +99,20 @@ def _row(variant: str, texture: str) -> str:
 
 
 def _pictures(
-    comparison: Comparison, folder: Path, progress: Progress | None
+    comparison: Comparison, folder: Path, progress: Progress
 ) -> dict[tuple[str, str], str]:
     """Draw every cell; variants of one texture lie below each other, under the same light."""
     pictures: dict[tuple[str, str], str] = {}
-    steps = len(comparison.textures) * len(comparison.variants) * len(comparison.rigs)
-    for texture in comparison.textures:
-        for variant in comparison.variants:
-            for rig in comparison.rigs:
-                if progress is not None:
-                    at = {"step": len(pictures), "steps": steps}
-                    progress("render", variant=variant, texture=texture, rig=rig, **at)
-                path = f"variants/{picture_path(rig, variant).removeprefix('images/')}"
-                path = f"{Path(path).with_suffix('')}/{Path(picture_path(texture, rig)).name}"
+    variants, textures, rigs = (
+        file_names(names) for names in (comparison.variants, comparison.textures, comparison.rigs)
+    )
+    steps = len(textures) * len(variants) * len(rigs)
+    for texture in textures:
+        for variant in variants:
+            for rig in rigs:
+                at = {"step": len(pictures), "steps": steps}
+                progress("render", variant=variant, texture=texture, rig=rig, **at)
+                path = f"variants/{variants[variant]}/{rigs[rig]}/{textures[texture]}.png"
                 files.write_bytes(folder / path, comparison[variant, texture, rig].png)
                 pictures[_row(variant, texture), rig] = path
     return pictures
@@ -119,7 +120,7 @@ def _pictures(
 
 def _summary(comparison: Comparison, scores: VariantScores | None) -> Iterator[str]:
     """How much each variant wrinkles, and where the others differ most from the first."""
-    shares = {name: above_one(v.zones) for name, v in comparison.variants.items()}
+    shares = {n: case.assessment.share_above_one for n, case in comparison.variants.items()}
     said = "; ".join(f"{name}: {number(100 * share)} %" for name, share in shares.items())
     yield f"Share of the cover with W2 above 1: {said}."
     first, *others = comparison.variants
@@ -166,9 +167,7 @@ def _marks(scores: VariantScores) -> ScoreSection:
 def _wrinkles(comparison: Comparison) -> WrinkleSection:
     """The worst wrinkles of every variant, each with a section across it and its place."""
     parts = {
-        name: section_of(
-            find(variant.solution, variant.indices, count=_WORST), comparison.camera, (), ()
-        )
+        name: section_of(variant.assessment, comparison.camera, count=_WORST, distortion=False)
         for name, variant in comparison.variants.items()
     }
     heads = next(iter(parts.values())).worst.heads[1:]
@@ -199,17 +198,19 @@ def _wrinkles(comparison: Comparison) -> WrinkleSection:
 
 
 def _maps(comparison: Comparison, folder: Path) -> Iterator[MapView]:
-    for index, meaning in MAPS.items():
-        for variant in comparison.variants:
-            stem = Path(picture_path(index, variant)).parent.name
-            path = f"maps/{stem}/{index}.png"
-            files.write_bytes(folder / path, comparison.map(variant, index).png)
+    names = file_names(comparison.variants)
+    for index in INDICES.values():
+        for variant, case in comparison.variants.items():
+            path = f"maps/{names[variant]}/{index.name}.png"
+            files.write_bytes(folder / path, comparison.map(variant, index.name).png)
+            low, high = map_ends(index, case.assessment.values(index.name), comparison.top)
             yield MapView(
-                name=f"{label(index)}, {variant}",
+                name=f"{index.symbol}, {variant}",
                 image=path,
-                low=-comparison.top if index == "w1" else 0.0,
-                high=comparison.top,
-                meaning=meaning,
+                low=low,
+                high=high,
+                unit=index.unit,
+                meaning=index.meaning,
             )
 
 
@@ -237,7 +238,7 @@ def _zones(comparison: Comparison, measure: str) -> Table:
 
 def _against(comparison: Comparison, table: Table) -> Table:
     """Heads of differences without the first variant, which the page names once."""
-    minus = f" - {comparison.first.name}"
+    minus = f" - {comparison.baseline}"
     heads = (f"change: {h.removesuffix(minus)}" if h.endswith(minus) else h for h in table.heads)
     return replace(table, heads=tuple(heads))
 
@@ -282,6 +283,6 @@ def _warnings(comparison: Comparison, scores: VariantScores | None) -> Iterator[
 def _provenance(comparison: Comparison) -> Iterator[tuple[str, str]]:
     yield "seatlook", __version__
     for name, variant in comparison.variants.items():
-        yield f"{name}, scene digest (sha256)", variant.scene.digest
+        yield f"{name}, run (sha256 of all that went in)", variant.solution.cover.scene_digest
         yield f"{name}, seed", str(variant.solution.cover.seed)
         yield f"{name}, element size h", f"{1e3 * variant.solution.cover.element_size:.2f} mm"

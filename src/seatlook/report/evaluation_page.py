@@ -9,50 +9,27 @@ from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
 
-import numpy as np
-
 from seatlook._version import __version__
 from seatlook.assembly.ease import SeamEase, seam_ease
-from seatlook.chain.evaluation import DISTANCES, MAPS, RESULT, Evaluation, label
+from seatlook.chain.evaluation import Evaluation
 from seatlook.model import Scene, Solution
 from seatlook.model.table import Table, number
-from seatlook.pbr import offscreen_backend, render_map
+from seatlook.model.zones import FREE_EDGE
+from seatlook.pbr import offscreen_backend
 from seatlook.report.page.data import PageData
-from seatlook.report.page.types import Check, MapView, ScoreSection
+from seatlook.report.page.types import Check, ScoreSection
 from seatlook.report.page.write import write_page
-from seatlook.report.sections.design import FILES, design_section, distance_table
+from seatlook.report.sections.design import design_section, distance_table
 from seatlook.report.sections.in_short import missed, seen, wrinkled
 from seatlook.report.sections.making import making_section
+from seatlook.report.sections.maps import map_view
 from seatlook.report.sections.parameters import parameter_tables, parameter_toml
 from seatlook.report.sections.rigs import rig_head
 from seatlook.report.sections.wrinkles import wrinkle_section
-from seatlook.results.gap import zone_gaps
-from seatlook.solver import foam_wavelength
-from seatlook.solver.process import verdict
-from seatlook.solver.process.process import RESIDUAL
+from seatlook.results.conditions import conditions
+from seatlook.results.resolution import resolutions
+from seatlook.wrinkle import INDICES
 
-# figure -> what it is, its limit, factor to the unit, unit
-_CONDITIONS: Mapping[str, tuple[str, float, float, str]] = {
-    "residual": ("out-of-balance force over mean elastic force", RESIDUAL, 1.0, ""),
-    "kinetic_ratio": ("kinetic over elastic energy", verdict.KINETIC, 1.0, ""),
-    "seam_gap_max": ("largest seam gap", verdict.SEAM_GAP, 1e3, " mm"),
-    "hook_gap_max": ("largest distance of a hook from its wire", verdict.ANCHOR_GAP, 1e3, " mm"),
-    "frame_gap_max": ("largest distance of a free edge", verdict.ANCHOR_GAP, 1e3, " mm"),
-    "contact_compression_max": (
-        "foam pressed, share of its thickness",
-        verdict.COMPRESSION,
-        1e2,
-        " %",
-    ),
-    "contact_resultant_error": (
-        "foam pressure against resultant",
-        verdict.RESULTANT,
-        1e2,
-        " %",
-    ),
-    "intersecting_pairs": ("pairs of triangles that pass through each other", 0.0, 1.0, ""),
-    "hem_crossing_pairs": ("triangles of a folded allowance that come through", 0.0, 1.0, ""),
-}
 # column of the history -> its name on the page, factor to the unit in it
 _CHARTED: Mapping[str, tuple[str, float]] = {
     "residual": ("out-of-balance force over mean elastic force", 1.0),
@@ -60,10 +37,6 @@ _CHARTED: Mapping[str, tuple[str, float]] = {
     "elastic": ("elastic energy [J]", 1.0),
     "kinetic": ("kinetic energy [J]", 1.0),
 }
-_CAUSES = ("w_stretch", "w_compression")  # maps that have a range of their own as well
-_OWN = 0.992  # share of the faces that lie in it
-_LOOSE_MESH = 8.0  # lambda / h below which the wrinkles' shape is not resolved
-_FINE_MESH = 12.0  # lambda / h from which the indices are
 
 
 def write_report(
@@ -72,7 +45,7 @@ def write_report(
     """Write the gallery page of an evaluation into its folder and return its path."""
     data = page_data(evaluation)
     summary = (
-        *wrinkled(evaluation.zones),
+        *wrinkled(evaluation.case.assessment),
         *seen(score.cells if score else {}),
         *missed((*_limits(evaluation), *(score.checks if score else ()))),
     )
@@ -82,10 +55,7 @@ def write_report(
 
 def page_data(evaluation: Evaluation) -> PageData:
     """Gather what the page shows."""
-    scene, solution = evaluation.scene, evaluation.solution
-    waves = {
-        m.name: foam_wavelength(m.fabric, scene.foam.material) for m in solution.cover.materials
-    }
+    scene, solution = evaluation.case.scene, evaluation.case.solution
     wrinkles = wrinkle_section(evaluation)
     return PageData(
         title=scene.name,
@@ -95,12 +65,12 @@ def page_data(evaluation: Evaluation) -> PageData:
         textures=tuple(scene.textures),
         rigs=tuple(rig_head(rig) for rig in scene.rigs),
         pictures=evaluation.pictures,
-        maps=tuple(_maps(evaluation)),
+        maps=tuple(map(map_view, (*evaluation.maps, *evaluation.distances))),
         zones=_zones(evaluation),
         parameters=parameter_tables(scene),
         toml=parameter_toml(scene),
         spots=wrinkles.spots,
-        provenance=MappingProxyType(dict(_provenance(evaluation, waves))),
+        provenance=MappingProxyType(dict(_provenance(evaluation))),
         status=solution.status,
         seams=seam_table(scene),
         shape=_shape(evaluation),
@@ -108,64 +78,26 @@ def page_data(evaluation: Evaluation) -> PageData:
         making=making_section(solution, evaluation.folder),
         design=design_section(evaluation),
         checks=(*_conditions(solution), *_limits(evaluation)),
-        warnings=tuple(_warnings(evaluation, waves)),
+        warnings=tuple(_warnings(evaluation)),
         history=MappingProxyType(
             {
                 name: tuple((factor * solution.history[column]).tolist())
                 for column, (name, factor) in _CHARTED.items()
             }
         ),
-        files=(RESULT, "zones.csv", *(FILES if scene.design else ()), *wrinkles.files),
+        files=evaluation.files,
     )
-
-
-def _maps(evaluation: Evaluation) -> Iterator[MapView]:
-    for name, (path, picture) in evaluation.maps.items():
-        low, high = picture.value_range
-        picture_unit, meaning = ("mm", DISTANCES[name]) if name in DISTANCES else ("1", MAPS[name])
-        alone, top = _own_range(evaluation, name) if name in _CAUSES else (None, 1.0)
-        yield MapView(
-            name=label(name),
-            image=path,
-            low=low,
-            high=high,
-            unit=picture_unit,
-            meaning=meaning,
-            alone=alone,
-            alone_high=top,
-        )
-
-
-def _own_range(evaluation: Evaluation, name: str) -> tuple[str, float]:
-    """Draw a cause of W2 in the range of its own values; return path and upper end."""
-    values = getattr(evaluation.indices, name)
-    top = max(float(np.quantile(values, _OWN)), 1e-6)
-    path = f"maps/{name}-own.png"
-    render_map(
-        evaluation.solution,
-        values,
-        camera=evaluation.camera,
-        title=f"{label(name)}, range of its own",
-        unit="1",
-        value_range=(0.0, top),
-    ).save(evaluation.folder / path)
-    return path, top
 
 
 def _zones(evaluation: Evaluation) -> Table:
     """Zones, worst first, without the free edges, which are clamped or trimmed and say nothing."""
+    columns = [column for index in INDICES.values() for column in index.columns]
     return Table(
         heads=(
             "zone",
             "area [cm2]",
-            "W2 mean",
-            "W2 95 %",
-            "W2 above 1 [% of area]",
-            "W_stretch mean",
-            "W_compression mean",
+            *(head for _, head, _ in columns),
             "stretch [% of W2]",
-            "W2 net mean",
-            "W2 net above 1 [% of area]",
             "W2 error",
             "h [mm]",
         ),
@@ -173,32 +105,26 @@ def _zones(evaluation: Evaluation) -> Table:
             (
                 row.zone,
                 1e4 * row.area,
-                row.w2_mean,
-                row.w2_p95,
-                100 * row.w2_area_share,
-                row.w_stretch_mean,
-                row.w_compression_mean,
+                *(factor * row[figure] for figure, _, factor in columns),
                 100 * row.stretch_share,
-                row.w2_net_mean,
-                None if row.w2_net_area_share is None else 100 * row.w2_net_area_share,
                 row.w2_error,
                 1e3 * row.element_size,
             )
-            for row in sorted(evaluation.zones, key=lambda row: -row.w2_p95)
-            if row.zone != "free edge"
+            for row in sorted(evaluation.case.assessment.zones, key=lambda row: -row["w2_p95"])
+            if row.zone != FREE_EDGE
         ),
     )
 
 
 def _shape(evaluation: Evaluation) -> Table:
-    """Gap of the zones to the foam, the largest first, and faces through each other."""
-    found = distance_table(zone_gaps(evaluation.solution, evaluation.gap))
-    figures = evaluation.solution.figures
+    """Gap of the zones, the farthest from the foam first, and faces through each other."""
+    table = distance_table(evaluation.case.assessment.zone_gaps)
+    figures = evaluation.case.solution.figures
     none = 0.0 if "intersecting_pairs" in figures else None
     return Table(
-        heads=(*found.heads, "intersecting pairs"),
+        heads=(*table.heads, "intersecting pairs"),
         rows=tuple(
-            (*row, figures.get(f"zone/{row[0]}/intersecting_pairs", none)) for row in found.rows
+            (*row, figures.get(f"zone/{row[0]}/intersecting_pairs", none)) for row in table.rows
         ),
     )
 
@@ -238,15 +164,13 @@ def _matching(ease: SeamEase) -> str:
 
 
 def _conditions(solution: Solution) -> Iterator[Check]:
-    for name, (what, limit, factor, unit) in _CONDITIONS.items():
-        if name not in solution.figures:
-            continue  # a cover without foam touches none
-        value = solution.figures[name]
+    for condition in conditions(solution):
+        unit = f" {condition.unit}" if condition.unit else ""
         yield Check(
-            name=what,
-            value=f"{number(factor * value)}{unit}",
-            limit=f"{number(factor * limit)}{unit}",
-            kept=value <= limit,
+            name=condition.meaning,
+            value=f"{number(condition.value)}{unit}",
+            limit=f"{number(condition.limit)}{unit}",
+            kept=condition.kept,
         )
 
 
@@ -260,26 +184,26 @@ def _limits(evaluation: Evaluation) -> Iterator[Check]:
         )
 
 
-def _warnings(evaluation: Evaluation, waves: Mapping[str, float]) -> Iterator[str]:
-    solution, h = evaluation.solution, evaluation.solution.cover.element_size
+def _warnings(evaluation: Evaluation) -> Iterator[str]:
+    solution = evaluation.case.solution
     if solution.status != "converged":
         yield f"The solution is not converged: {solution.reason}."
-    for name, wave in waves.items():
-        if wave < _LOOSE_MESH * h:
+    for mesh in resolutions(solution.cover):
+        h, wave = number(1e3 * mesh.element_size), number(1e3 * mesh.wavelength)
+        if mesh.level == "not resolved":
             yield (
-                f"{name}: elements of {number(1e3 * h)} mm are coarser than an eighth of its "
-                f"wavelength of {number(1e3 * wave)} mm; shape and indices are not resolved."
+                f"{mesh.material}: elements of {h} mm are coarser than an eighth of its "
+                f"wavelength of {wave} mm; shape and indices are not resolved."
             )
-        elif wave < _FINE_MESH * h:
+        elif mesh.level == "shape only":
             yield (
-                f"{name}: elements of {number(1e3 * h)} mm resolve the shape of its wrinkles "
-                f"(wavelength {number(1e3 * wave)} mm), but not yet the indices, which need a "
-                "twelfth."
+                f"{mesh.material}: elements of {h} mm resolve the shape of its wrinkles "
+                f"(wavelength {wave} mm), but not yet the indices, which need a twelfth."
             )
 
 
-def _provenance(evaluation: Evaluation, waves: Mapping[str, float]) -> Iterator[tuple[str, str]]:
-    scene, solution = evaluation.scene, evaluation.solution
+def _provenance(evaluation: Evaluation) -> Iterator[tuple[str, str]]:
+    scene, solution = evaluation.case.scene, evaluation.case.solution
     cover = solution.cover
     yield "seatlook", __version__
     yield "solved with", solution.version
@@ -288,14 +212,15 @@ def _provenance(evaluation: Evaluation, waves: Mapping[str, float]) -> Iterator[
     yield "python", platform.python_version()
     yield "drawn with", offscreen_backend().window
     yield "scene", scene.path.name if scene.path else scene.name
-    yield "scene digest (sha256)", scene.digest
+    yield "run (sha256 of all that went in)", cover.scene_digest
+    yield "solver settings", solution.settings
     yield "seed", str(cover.seed)
     yield "vertices, triangles", f"{len(cover.rest)}, {len(cover.faces)}"
     yield "element size h", f"{number(1e3 * cover.element_size)} mm"
-    for name, wave in waves.items():
+    for mesh in resolutions(cover):
         yield (
-            f"wavelength lambda of {name}",
-            f"{number(1e3 * wave)} mm, lambda / h = {number(wave / cover.element_size)}",
+            f"wavelength lambda of {mesh.material}",
+            f"{number(1e3 * mesh.wavelength)} mm, lambda / h = {number(mesh.per_wave)}",
         )
     yield "solver status", solution.status
     yield "solver steps", number(solution.figures["steps"])

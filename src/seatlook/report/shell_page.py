@@ -8,14 +8,13 @@ from types import MappingProxyType
 from typing import Any
 
 from seatlook._version import __version__
-from seatlook.chain.evaluation import MAPS, label
 from seatlook.chain.shell_maps import PICTURE, DrawnState
 from seatlook.model.table import Table
 from seatlook.report.page.data import PageData
-from seatlook.report.page.types import MapView
 from seatlook.report.page.write import write_page
+from seatlook.report.sections.maps import map_view
 from seatlook.report.sections.rigs import rig_head
-from seatlook.report.sections.wrinkles import distortion_views, section_of
+from seatlook.report.sections.wrinkles import section_of
 
 # key of a part's figures -> head of its column
 _COLUMNS: MappingProxyType[str, str] = MappingProxyType(
@@ -45,7 +44,7 @@ def write_shell_page(
 
     Parameters
     ----------
-    figures : of the state, from ``seatlook.shells.states.state_figures``
+    figures : of the state, from ``seatlook.chain.shell_states.state_figures``
     asked : what was asked for -> its value, such as curvature mode and threshold
     notes : what the reader of the file said
     """
@@ -61,16 +60,14 @@ def write_shell_page(
         textures=(look,),
         rigs=(rig,),
         pictures=MappingProxyType({(look, rig.name): PICTURE}),
-        maps=tuple(_map_views(drawn)),
-        zones=Table(
-            heads=("part", *_COLUMNS.values()),
-            rows=tuple(
-                (f"{p['part']} {p['name']}".strip(), *(p[key] for key in _COLUMNS))
-                for p in figures["parts"]
-            ),
-        ),
+        maps=tuple(map(map_view, drawn.maps)),
+        zones=_parts(figures),
         wrinkles=section_of(
-            drawn.findings, drawn.camera, tuple(distortion_views(drawn.distortion)), drawn.files
+            drawn.assessment,
+            drawn.camera,
+            maps=tuple(map(map_view, drawn.distortion)),
+            files=drawn.files,
+            distortion=not drawn.cover.projected,
         ),
         parameters=MappingProxyType({"evaluation": parameters}),
         provenance=MappingProxyType(
@@ -90,10 +87,15 @@ def write_shell_page(
     return write_page(data, drawn.folder)
 
 
-def _map_views(drawn: DrawnState) -> Iterator[MapView]:
-    for name, (path, picture) in drawn.maps.items():
-        low, high = picture.value_range
-        yield MapView(name=label(name), image=path, low=low, high=high, meaning=MAPS[name])
+def _parts(figures: dict[str, Any]) -> Table:
+    """One row per part of a state."""
+    return Table(
+        heads=("part", *_COLUMNS.values()),
+        rows=tuple(
+            (f"{p['part']} {p['name']}".strip(), *(p[key] for key in _COLUMNS))
+            for p in figures["parts"]
+        ),
+    )
 
 
 def _projected(drawn: DrawnState) -> Iterator[str]:

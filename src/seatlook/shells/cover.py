@@ -10,7 +10,7 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.mesh import face_vectors
 from seatlook.model import Cover, FloatArray, IntArray, Material, Shells, ShellState, Solution
-from seatlook.shells.strains import ShellWrinkles, element_frames
+from seatlook.shells.strains import ShellStrains, element_frames
 
 _FLAT = 1e-3  # of a part's extent; what lies further from its plane is not flat
 _GAP = 0.05  # [m] between panels that are laid side by side
@@ -23,7 +23,7 @@ class ShellCover:
     Parameters
     ----------
     solution : Solution       zones are the parts
-    element : (m,) int64      row of the ``ShellWrinkles`` of each face, to map its values
+    element : (m,) int64      row of the ``ShellStrains`` of each face, to map its values
     projected : names of the parts that have no flat undeformed state: they are cut into panels by
         the world axis that their faces look along, and textures are laid on along that axis
     """
@@ -36,7 +36,7 @@ class ShellCover:
 def shell_cover(
     shells: Shells,
     state: ShellState,
-    wrinkles: ShellWrinkles,
+    wrinkles: ShellStrains,
     materials: Material | Mapping[int, Material],
 ) -> ShellCover:
     """Make a solution of the evaluated shells; each part becomes a panel and a zone.
@@ -47,7 +47,7 @@ def shell_cover(
 
     Parameters
     ----------
-    wrinkles : of the same state, from ``shell_indices``
+    wrinkles : of the same state, from ``shell_strains``
     materials : one for all parts, or part number -> Material
 
     Raises
@@ -124,7 +124,7 @@ def _materials(
     return tuple(materials[int(p)] for p in parts)
 
 
-def _oriented(shells: Shells, wrinkles: ShellWrinkles) -> tuple[IntArray, IntArray]:
+def _oriented(shells: Shells, wrinkles: ShellStrains) -> tuple[IntArray, IntArray]:
     """Return triangles of the evaluated shells, seen from outside, and their rows."""
     faces, owner = shells.triangles()
     row = np.full(len(shells), -1)
@@ -233,7 +233,7 @@ def _warp_and_weft(p: FloatArray, normal: FloatArray) -> FloatArray:
 def _strains(
     shells: Shells,
     reference: FloatArray,
-    wrinkles: ShellWrinkles,
+    wrinkles: ShellStrains,
     element: IntArray,
     warp: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:

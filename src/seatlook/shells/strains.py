@@ -1,4 +1,4 @@
-"""Wrinkle indices of shell results: element planes, consistent sides, strains or shape."""
+"""Strains of shell results in their planes: consistent sides, from strains or from the shape."""
 
 from __future__ import annotations
 
@@ -10,29 +10,27 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError
 from seatlook.mesh.kinematics import green_of_logarithmic, logarithmic_strain
-from seatlook.model import FloatArray, IntArray, Shells, ShellState, WrinkleMap
-from seatlook.model.scene import CurvatureMode
-from seatlook.wrinkle.equations import STRAIN_MEASURES, StrainMeasure, wrinkle_indices
+from seatlook.model import FloatArray, IntArray, Shells, ShellState, StrainMeasure, Strains
+from seatlook.wrinkle.equations import STRAIN_MEASURES
 from seatlook.wrinkle.jet import vertex_curvature
 from seatlook.wrinkle.orientation import agree
 
 StrainSource = Literal["strains", "shape", "strains and shape"]
-DEFAULT_THRESHOLD = {"paper": 10.0, "tensor": 20.0}  # [1/m], radius 50 mm
 
 _FLAT = 1e-10  # area over the square of the longest diagonal, below which a shell has no plane
 _UNBENT = 1e-9  # strain at the surface
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ShellWrinkles:
-    """Indices of one state, per evaluated element.
+class ShellStrains:
+    """Strains of one state, per evaluated element.
 
     Parameters
     ----------
     element : (k,) int64           into ``Shells``; deleted elements are left out
-    indices : WrinkleMap           fields (k,)
     strain_mid, strain_half : (k, 2, 2)   mid strain, and half of top minus bottom, in the element
         plane with the first axis along its middle line
+    thickness : (k,) float64 [m]
     sign : (k,) float64            -1 where the element was turned over
     area : (k,) float64 [m2]
     size : (k,) float64 [m]        mean length of the sides
@@ -42,9 +40,9 @@ class ShellWrinkles:
     """
 
     element: IntArray
-    indices: WrinkleMap
     strain_mid: FloatArray
     strain_half: FloatArray
+    thickness: FloatArray
     sign: FloatArray
     area: FloatArray
     size: FloatArray
@@ -56,17 +54,26 @@ class ShellWrinkles:
         """Number of elements whose normal was turned over to agree with its neighbours."""
         return int((self.sign < 0).sum())
 
+    @property
+    def strains(self) -> Strains:
+        """On both surfaces and in the middle; one threshold counts for all elements."""
+        return Strains(
+            top=self.strain_mid + self.strain_half,
+            mid=self.strain_mid,
+            bottom=self.strain_mid - self.strain_half,
+            thickness=self.thickness,
+            panel=np.zeros(len(self.element), dtype=np.int64),
+        )
 
-def shell_indices(
+
+def shell_strains(
     shells: Shells,
     state: ShellState,
     *,
-    curvature: CurvatureMode = "paper",
-    c_threshold: float | None = None,
     facing: FloatArray | None = None,
     strain_measure: StrainMeasure | None = None,
-) -> ShellWrinkles:
-    """Evaluate eqs. (1) to (6) on the shells of one state.
+) -> ShellStrains:
+    """Bring the strains of one state into the planes of its shells.
 
     Normals are made to agree across shared edges, turning the smaller area over, and the strains
     of turned elements change sides. Strains in global axes are brought into the element plane,
@@ -74,7 +81,6 @@ def shell_indices(
 
     Parameters
     ----------
-    c_threshold : float [1/m]      default 10 ("paper") or 20 ("tensor")
     facing : (3,) float64          the visible side: every connected piece is turned so that its
         mean normal has a component along it; without it the file's normals decide
     strain_measure : "green" or "logarithmic", to evaluate the equations in; without it as the
@@ -99,15 +105,11 @@ def shell_indices(
     if strain_measure is not None:
         given: StrainMeasure = "green" if state.strain_inner is None else "logarithmic"
         mid, half = _measured(mid, half, given, strain_measure)
-    threshold = DEFAULT_THRESHOLD[curvature] if c_threshold is None else c_threshold
-    indices = wrinkle_indices(
-        mid + half, mid, mid - half, state.thickness[element], threshold, curvature=curvature
-    )
-    return ShellWrinkles(
+    return ShellStrains(
         element=element,
-        indices=indices,
         strain_mid=mid,
         strain_half=half,
+        thickness=state.thickness[element],
         sign=sign,
         area=area,
         size=_mean_side(state.positions[corners]),

@@ -4,9 +4,10 @@ from seatlook.solver.foam.contact import foam_wavelength
 from seatlook.solver.methods.explicit import Explicit, UnstableStepError
 from seatlook.solver.process.settings import SheetSettings, SolverSettings
 from seatlook.solver.sheet import Load, Sheet, SheetError, Support, solve_sheet
-from seatlook.solver.solve import ConvergenceError, solve
+from seatlook.solver.solve import SETTINGS, ConvergenceError, settings_of, solve
 
 __all__ = [
+    "SETTINGS",
     "ConvergenceError",
     "Explicit",
     "Load",
@@ -17,6 +18,7 @@ __all__ = [
     "Support",
     "UnstableStepError",
     "foam_wavelength",
+    "settings_of",
     "solve",
     "solve_sheet",
 ]

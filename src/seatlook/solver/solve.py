@@ -17,6 +17,9 @@ from seatlook.solver.process.settings import DEFAULT, SolverSettings
 from seatlook.solver.process.stages import Step, check_stages, schedule
 from seatlook.solver.process.verdict import figures, reasons, unrest
 
+# Raised whenever the same cover comes to rest in another shape: results kept until then are not
+# taken again. tests/solver/test_revision.py compares the shapes.
+REVISION = 1
 _REST = "at rest"
 _ROUNDS = 40  # of the way to rest, each with the inertia of a time step twice as long
 _LONGER = 10.0  # than a time step, the first of them
@@ -95,7 +98,7 @@ def solve(
     if start is not None:
         count = len(plan) - len(ahead)
         process.resume(start, time=plan[count - 1].time if count else 0.0)
-    run = _Run(process, plan, clock, progress)
+    run = _Run(process, plan, clock, progress, settings_of(settings))
     for i, step in enumerate(ahead):
         first = i == 0 or ahead[i - 1].stage != step.stage
         if first:
@@ -114,12 +117,33 @@ def solve(
     return solution
 
 
+def settings_of(settings: SolverSettings = DEFAULT) -> str:
+    """How a result was solved, in one line: revision of the solver, method, steps.
+
+    Examples
+    --------
+    >>> settings_of(SolverSettings(dt=0.01))
+    'revision 1, lbfgs, dt 0.01 s, 8 iterations'
+    """
+    steps = f"dt {settings.dt:g} s, {settings.iterations} iterations"
+    return f"revision {REVISION}, {settings.method}, {steps}"
+
+
+SETTINGS = settings_of()
+
+
 class _Run:
     """History and clock of one call of ``solve``."""
 
     def __init__(
-        self, process: Process, plan: list[Step], clock: float, progress: Progress | None
+        self,
+        process: Process,
+        plan: list[Step],
+        clock: float,
+        progress: Progress | None,
+        settings: str,
     ) -> None:
+        self.settings = settings
         self.process, self.progress, self.clock = process, progress, clock
         self.steps, self.plan = len(plan) + 1, plan
         self.records: list[Record] = []
@@ -193,6 +217,7 @@ class _Run:
             reason="; ".join(causes),
             history=MappingProxyType(columns | {"cpu_seconds": np.array(self.seconds)}),
             figures=MappingProxyType(figures(process, self.records) | {"cpu_seconds": seconds}),
+            settings=self.settings,
             version=__version__,
         )
 

@@ -17,14 +17,16 @@ from scipy.spatial import cKDTree
 from seatlook import files, io
 from seatlook._version import __version__
 from seatlook.assembly import assemble
-from seatlook.chain.evaluation import draw_pictures, wrinkle_map
+from seatlook.assembly.digest import content_digest
+from seatlook.chain.case import Case
+from seatlook.chain.draw import Canvas, draw_pictures
+from seatlook.chain.files import picture_paths
 from seatlook.errors import InputError, did_you_mean
 from seatlook.io.sweep import Sweep, Tolerance
-from seatlook.model import Cover, FloatArray, Scene
+from seatlook.model import Cover, FloatArray
 from seatlook.model.progress import silent
-from seatlook.solver import solve
+from seatlook.solver import SETTINGS
 from seatlook.sweeps.irregularity import draw, irregular
-from seatlook.wrinkle import zone_table
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,8 +67,9 @@ def _cells(sweep: Sweep) -> Iterator[Cell]:
                 "textures": list(sweep.textures), "rigs": list(sweep.rigs),
                 "inputs": [asdict(i) for i in sweep.inputs],
             }  # fmt: skip
+            digest = content_digest(scene)
             for row in [None] if drawn is None else drawn.tolist():
-                yield _named({**base, "values": row}, scene.digest)
+                yield _named({**base, "values": row}, digest)
 
 
 def _check(chosen: tuple[str, ...], known: Any, path: Path) -> None:
@@ -82,7 +85,7 @@ def _check(chosen: tuple[str, ...], known: Any, path: Path) -> None:
 def _named(spec: dict[str, Any], digest: str) -> Cell:
     # The digest stands for the contents of all files; where they lie does not matter.
     content = {k: v for k, v in spec.items() if k != "scene"} | {
-        "digest": digest, "version": __version__,
+        "digest": digest, "solver": SETTINGS, "version": __version__,
     }  # fmt: skip
     text = json.dumps(content, sort_keys=True)
     return Cell(
@@ -129,19 +132,21 @@ def _run(name: str, spec: dict[str, Any], out: Path) -> None:
     inputs = [Tolerance(**i) for i in spec["inputs"]]
     values = spec["values"]
     made = drawn if values is None else irregular(drawn, inputs, values)
-    cover = assemble(made)
-    solution = solve(cover)
-    indices = wrinkle_map(made, solution)
-    nominal = cover if values is None else assemble(drawn)
-    _write_array(out / f"{name}.npy", carried(indices.w2, cover, nominal))
+    case = Case(made)
+    solution = case.solve()
+    nominal = case.cover if values is None else assemble(drawn)
+    w2 = carried(case.assessment.indices.w2, case.cover, nominal)
+    _write_array(out / f"{name}.npy", w2)
     if spec["textures"] and spec["rigs"]:
-        draw_pictures(_chosen(made, spec), solution, made.cameras[0], out / name, silent)
+        canvas = Canvas(solution=solution, camera=case.camera(None), out=out / name, run=name)
+        part = case.narrowed(spec["textures"], spec["rigs"])
+        draw_pictures(part, canvas, silent, paths=picture_paths(made))
     result = {
         "cell": name,
         **{k: v for k, v in spec.items() if k != "scene"},
         "status": solution.status,
         "reason": solution.reason,
-        "zones": [asdict(row) for row in zone_table(solution, indices)],
+        "zones": [row.values() for row in case.assessment.zones],
     }
     files.write_text(out / f"{name}.json", json.dumps(result, indent=1, sort_keys=True) + "\n")
 
@@ -157,17 +162,6 @@ def carried(values: FloatArray, cover: Cover, onto: Cover) -> FloatArray:
         tree = cKDTree(cover.uv[cover.faces[here]].mean(axis=1))
         found[there] = values[here][tree.query(onto.uv[onto.faces[there]].mean(axis=1))[1]]
     return found
-
-
-def _chosen(scene: Scene, spec: dict[str, Any]) -> Scene:
-    from dataclasses import replace
-    from types import MappingProxyType
-
-    return replace(
-        scene,
-        rigs=tuple(rig for rig in scene.rigs if rig.name in spec["rigs"]),
-        textures=MappingProxyType({t: scene.textures[t] for t in spec["textures"]}),
-    )
 
 
 def _write_array(path: Path, values: FloatArray) -> None:

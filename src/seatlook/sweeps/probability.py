@@ -10,10 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from seatlook import io, pbr
-from seatlook.assembly import assemble
+from seatlook.chain.case import Case
 from seatlook.errors import InputError
 from seatlook.model import Cover, FloatArray
-from seatlook.solver import solve
 from seatlook.sweeps.cell import Cell, failed
 from seatlook.sweeps.summary import rows
 
@@ -98,7 +97,7 @@ def draw_chance(
     """Draw the probability that W2 is above 1 on the cover as drawn; return its zones."""
     spec = json.loads(cells[0].spec)
     scene = io.load_scene(spec["scene"], changes=spec["set"])
-    solution = solve(assemble(scene))
+    solution = Case(scene).solution
     pbr.render_map(
         solution,
         probability.share,

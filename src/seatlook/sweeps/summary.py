@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from seatlook.errors import InputError
+from seatlook.model.zones import FREE_EDGE
 from seatlook.sweeps.cell import Cell, finished
 from seatlook.sweeps.irregularity import rank_correlation
+from seatlook.wrinkle import figure_names
 
-MEASURES = ("w2_mean", "w2_p95", "w2_area_share", "w_stretch_mean", "w_compression_mean")
 FEWEST = 4  # converged covers from which ranks mean something
 OUTPUT = "w2_mean"  # over the whole cover; the share above 1 is often 0 in every cell
 
@@ -65,9 +66,10 @@ def rows(cells: Sequence[Cell], folder: Path) -> list[dict[str, Any]]:
 
 def overall(zones: Sequence[dict[str, Any]]) -> dict[str, float]:
     """Means over the zones, weighted by area, without free edges, which are clamped or trimmed."""
-    inner = [z for z in zones if z["zone"] != "free edge"]
+    inner = [z for z in zones if z["zone"] != FREE_EDGE]
     area = np.array([z["area"] for z in inner])
-    return {m: float(area @ [z[m] for z in inner] / area.sum()) for m in MEASURES}
+    figures = [name for name in figure_names() if name in inner[0]]
+    return {m: float(area @ [z[m] for z in inner] / area.sum()) for m in figures}
 
 
 def causes(cells: Sequence[Cell], folder: Path) -> tuple[Cause, ...]:

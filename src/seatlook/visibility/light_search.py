@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model import Camera, FloatArray, Rig, bulb, direction, sun
+from seatlook.model.progress import Progress, silent
 from seatlook.visibility.view import Looks, View
 
 LOWEST_DEG = 10.0
@@ -140,3 +141,23 @@ def _near(
 ) -> bool:
     here = direction(*angles)
     return any(float(here @ direction(a, e)) > np.cos(radius) for a, e, _ in tried)
+
+
+def worst_lights(
+    view: View, textures: Mapping[str, Looks], *, progress: Progress = silent
+) -> dict[str, dict[str, WorstLight]]:
+    """Search the sun direction and the bulb position that show the wrinkles of each texture most.
+
+    Returns
+    -------
+    dict
+        texture -> "sun" or "bulb" -> the worst light.
+    """
+    rigs = {"sun": sun_rig(), "bulb": bulb_rig(view.camera)}
+    lights: dict[str, dict[str, WorstLight]] = {}
+    for name, looks in textures.items():
+        lights[name] = {}
+        for kind, rig_at in rigs.items():
+            progress("search light", texture=name, kind=kind)
+            lights[name][kind] = search_light(view, looks, rig_at)
+    return lights

@@ -1,6 +1,5 @@
 """How much a cover wrinkles, where and why."""
 
-from seatlook.mesh.statistics import quantile
 from seatlook.wrinkle.distortion import (
     DISTORTIONS,
     Distortion,
@@ -22,16 +21,11 @@ from seatlook.wrinkle.equations import (
 )
 from seatlook.wrinkle.measures import (
     DEAD_BAND,
-    INDICES,
-    MEASURES,
     TENSION_STATES,
-    Surface,
+    excess_strain,
     isotropic_membrane,
     signed_ratio,
-    surface_of,
     tension_state,
-    threshold_of_radius,
-    thresholds,
     w2_net,
     wrinkle_strain,
 )
@@ -42,7 +36,9 @@ from seatlook.wrinkle.recovery import (
     recovery_error,
     shape_curvature,
 )
+from seatlook.wrinkle.registry import INDICES, STATISTICS, Index, figure_names, register
 from seatlook.wrinkle.section import Section, section
+from seatlook.wrinkle.surface import Surface
 from seatlook.wrinkle.worst import Wrinkle, beside_sections, section_across, worst_wrinkles
 from seatlook.wrinkle.zone import ZoneRow, map_top, zone_table
 
@@ -51,11 +47,12 @@ __all__ = [
     "DESIGN_WAVELENGTH",
     "DISTORTIONS",
     "INDICES",
-    "MEASURES",
+    "STATISTICS",
     "STRAIN_MEASURES",
     "TENSION_STATES",
     "Distortion",
     "DistortionRow",
+    "Index",
     "Section",
     "Surface",
     "Wrinkle",
@@ -66,12 +63,14 @@ __all__ = [
     "curvature_tensor",
     "distortion",
     "distortion_table",
+    "excess_strain",
+    "figure_names",
     "isotropic_membrane",
     "low_passed",
     "map_top",
-    "quantile",
     "recover",
     "recovery_error",
+    "register",
     "relative_curvature",
     "section",
     "section_across",
@@ -79,11 +78,8 @@ __all__ = [
     "signed_ratio",
     "stretch_ratio",
     "stretch_wrinkle",
-    "surface_of",
     "surface_strains",
     "tension_state",
-    "threshold_of_radius",
-    "thresholds",
     "w2_net",
     "worst_wrinkles",
     "wrinkle_index",

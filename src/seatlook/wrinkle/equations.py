@@ -7,16 +7,13 @@ whose top is stretched; a valley has ``kappa < 0``.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal
 
 import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.mesh.kinematics import logarithmic_strain, principal_values
-from seatlook.model import FloatArray, Solution, WrinkleMap
-from seatlook.model.scene import CurvatureMode
+from seatlook.model import CurvatureMode, FloatArray, Solution, StrainMeasure, WrinkleMap
 
-StrainMeasure = Literal["green", "logarithmic"]
 STRAIN_MEASURES: dict[StrainMeasure, Callable[[FloatArray], FloatArray]] = {
     "green": lambda green: green,
     "logarithmic": logarithmic_strain,

@@ -6,71 +6,16 @@ answers to noise. Nothing here replaces it; ``docs/reference/indices.md`` shows 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 
-from seatlook.errors import InputError
 from seatlook.mesh.kinematics import principal_values
-from seatlook.model import Cover, FloatArray, IntArray, Solution, WrinkleMap
-from seatlook.model.scene import CurvatureMode
+from seatlook.model import FloatArray, IntArray
 from seatlook.wrinkle.equations import relative_curvature, wrinkle_index
-from seatlook.wrinkle.recovery import low_passed, shape_curvature
+from seatlook.wrinkle.surface import Surface
 
 DEAD_BAND = 1e-3  # strains below it count as none
 SLACK, WRINKLED, TAUT = 0, 1, 2
 TENSION_STATES = ("slack", "wrinkled", "taut")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Surface:
-    """What measures look at, per face.
-
-    Parameters
-    ----------
-    strain_mid : (m, 2, 2)         Green strain in warp/weft axes
-    net : (m, 2, 2) [1/m]          curvature of the shape minus that of the shape that was meant
-    membrane : (m, 3, 3) [N/m]     (S11, S22, S12) = D (E11, E22, 2 E12)
-    indices : WrinkleMap           the paper's
-    c_threshold : float or (m,) [1/m]
-    """
-
-    strain_mid: FloatArray
-    net: FloatArray
-    membrane: FloatArray
-    indices: WrinkleMap
-    c_threshold: float | FloatArray
-
-
-def surface_of(
-    solution: Solution,
-    indices: WrinkleMap,
-    c_threshold: float | FloatArray,
-    *,
-    design: FloatArray | None = None,
-) -> Surface:
-    """Collect what ``MEASURES`` need from a solved cover.
-
-    Parameters
-    ----------
-    design : (n, 3) float64 [m]    the shape that was meant; without it the solved one with waves
-        below 45 mm removed between seams and hooks
-
-    Notes
-    -----
-    Both curvatures of ``net`` are fitted to the shapes, so that their errors at panel edges cancel;
-    against the strains' curvature they would add wrinkles there.
-    """
-    cover = solution.cover
-    shape = low_passed(cover, solution.positions) if design is None else design
-    return Surface(
-        strain_mid=solution.strain_mid,
-        net=shape_curvature(cover, solution.positions) - shape_curvature(cover, shape),
-        membrane=np.stack([m.fabric.membrane_matrix for m in cover.materials])[cover.panel],
-        indices=indices,
-        c_threshold=c_threshold,
-    )
 
 
 def signed_ratio(strain_mid: FloatArray, dead_band: float = DEAD_BAND) -> FloatArray:
@@ -132,37 +77,6 @@ def tension_state(
     return np.where(major < dead_band, SLACK, np.where(compressed, WRINKLED, TAUT)).astype(np.int64)
 
 
-def threshold_of_radius(radius: float | FloatArray, curvature: CurvatureMode) -> FloatArray:
-    """C_threshold [1/m] for the bending radius [m] at which a material shows its first wrinkle.
-
-    The radius is that of a half-pipe test as in VDA 230-205. ``"tensor"`` sees the fold's whole
-    curvature 1/R, ``"paper"`` half of it.
-
-    Raises
-    ------
-    InputError
-        A radius of 0 or less.
-
-    Examples
-    --------
-    >>> [float(threshold_of_radius(0.05, mode)) for mode in ("tensor", "paper")]
-    [20.0, 10.0]
-    """
-    r = np.asarray(radius, dtype=float)
-    if not bool(((r > 0) & np.isfinite(r)).all()):
-        raise InputError.single("radius", got=radius, expected="above 0")
-    return np.asarray((1.0 if curvature == "tensor" else 0.5) / r)
-
-
-def thresholds(cover: Cover, curvature: CurvatureMode, default: float) -> FloatArray:
-    """C_threshold per face, (m,) [1/m]: the material's own, by its radius, else the default."""
-    own = [m.c_threshold or default for m in cover.materials]
-    for k, m in enumerate(cover.materials):
-        if m.first_wrinkle_radius is not None:
-            own[k] = float(threshold_of_radius(m.first_wrinkle_radius, curvature))
-    return np.array(own)[cover.panel]
-
-
 def w2_net(surface: Surface) -> FloatArray:
     """W2 of the net curvature: what the design does not ask for (m,)."""
     _, valley = principal_values(surface.net)
@@ -172,22 +86,3 @@ def w2_net(surface: Surface) -> FloatArray:
 def excess_strain(surface: Surface) -> FloatArray:
     """Fabric in excess (m,) [1] >= 0: the wrinkle strain, counted positive."""
     return np.asarray(np.maximum(-wrinkle_strain(surface.strain_mid, surface.membrane), 0.0))
-
-
-# name -> function of a Surface; the paper's six, then those that stand beside them
-INDICES: dict[str, Callable[[Surface], FloatArray]] = {
-    "c": lambda s: s.indices.c,
-    "w1": lambda s: s.indices.w1,
-    "w2": lambda s: s.indices.w2,
-    "r_stretch": lambda s: s.indices.r_stretch,
-    "w_stretch": lambda s: s.indices.w_stretch,
-    "w_compression": lambda s: s.indices.w_compression,
-}
-MEASURES: dict[str, Callable[[Surface], FloatArray]] = {
-    "signed_ratio": lambda s: signed_ratio(s.strain_mid),
-    "excess_strain": excess_strain,
-    "tension_state": lambda s: tension_state(s.strain_mid, s.membrane).astype(float),
-    "w2_net": w2_net,
-    "w2_net_stretch": lambda s: w2_net(s) * signed_ratio(s.strain_mid),
-    "w2_net_compression": lambda s: w2_net(s) * (1.0 - signed_ratio(s.strain_mid)),
-}

@@ -2,79 +2,87 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
-from seatlook.mesh.statistics import quantile
-from seatlook.model import FloatArray, Solution, WrinkleMap
+from seatlook.model import Cover, FloatArray, WrinkleMap
 from seatlook.wrinkle.recovery import recovery_error
+from seatlook.wrinkle.registry import INDICES, STATISTICS, mean
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ZoneRow:
     """Figures of one zone; means and shares are weighted by rest area.
 
+    ``row["w2_mean"]`` is a figure; the registry of indices says which there are.
+
     Parameters
     ----------
     area : [m2]
-    w2_mean, w2_p95 : [1]; w2_area_share : share of the area with W2 above 1
-    w_stretch_mean, w_compression_mean : [1]
-    stretch_share : [1] in [0, 1]   part of the zone's W2 that is W_stretch; 0 where W2 is 0
     element_size : [m]              mean edge length h of the zone's faces at rest
+    stretch_share : [1] in [0, 1]   part of the zone's W2 that is W_stretch; 0 where W2 is 0
     w2_error : [1]                  rms of W2 against its recovered field, an estimate of its error
-    w2_net_mean, w2_net_p95, w2_net_area_share : [1]   the same figures of W2 without the design's
-        own curvature; None where it was not evaluated
+    figures : name -> value         of every index of the registry
     """
 
     zone: str
     area: float
-    w2_mean: float
-    w2_p95: float
-    w2_area_share: float
-    w_stretch_mean: float
-    w_compression_mean: float
-    stretch_share: float
     element_size: float
+    stretch_share: float
     w2_error: float
-    w2_net_mean: float | None = None
-    w2_net_p95: float | None = None
-    w2_net_area_share: float | None = None
+    figures: MappingProxyType[str, float]
+
+    def __getitem__(self, name: str) -> float:
+        return self.figures[name]
+
+    def values(self) -> dict[str, str | float]:
+        """Return the whole row as plain values, the figures last."""
+        return {
+            "zone": self.zone,
+            "area": self.area,
+            "element_size": self.element_size,
+            "stretch_share": self.stretch_share,
+            "w2_error": self.w2_error,
+            **self.figures,
+        }
 
 
-def zone_table(
-    solution: Solution, indices: WrinkleMap, net: FloatArray | None = None
-) -> tuple[ZoneRow, ...]:
-    """Summarise W2 and its causes zone by zone, empty zones left out.
+def zone_table(cover: Cover, values: Mapping[str, FloatArray]) -> tuple[ZoneRow, ...]:
+    """Summarise indices zone by zone, empty zones left out.
 
-    ``net`` (m,) is ``w2_net`` of the same solution, to stand beside W2.
+    Parameters
+    ----------
+    values : name of an index of the registry -> (m,) in its unit; W2 and W_stretch among them
     """
-    cover = solution.cover
     area = cover.rest_area
-    error = recovery_error(cover.rest, cover.faces, indices.w2)
+    error = recovery_error(cover.rest, cover.faces, values["w2"])
     corners = cover.rest[cover.faces]
     side = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean(axis=1)
     rows = []
-    for i, name in enumerate(cover.zone_names):
-        inside = cover.zone == i
+    for number, name in enumerate(cover.zone_names):
+        inside = cover.zone == number
         if not inside.any():
             continue
         weight = area[inside]
-        w2 = indices.w2[inside]
-        mean, stretch = _mean(w2, weight), _mean(indices.w_stretch[inside], weight)
+        w2, stretch = (mean(values[index][inside], weight) for index in ("w2", "w_stretch"))
         rows.append(
             ZoneRow(
                 zone=name,
                 area=float(weight.sum()),
-                w2_mean=mean,
-                w2_p95=quantile(w2, weight, 0.95),
-                w2_area_share=_mean((w2 > 1).astype(float), weight),
-                w_stretch_mean=stretch,
-                w_compression_mean=_mean(indices.w_compression[inside], weight),
-                stretch_share=stretch / mean if mean > 0 else 0.0,
                 element_size=float(side[inside].mean()),
-                w2_error=_mean(error[inside] ** 2, weight) ** 0.5,
-                **({} if net is None else _net_figures(net[inside], weight)),
+                stretch_share=stretch / w2 if w2 > 0 else 0.0,
+                w2_error=mean(error[inside] ** 2, weight) ** 0.5,
+                figures=MappingProxyType(
+                    {
+                        figure: STATISTICS[statistic](values[index.name][inside], weight)
+                        for index in INDICES.values()
+                        if index.name in values
+                        for figure, statistic in zip(index.figures, index.statistics, strict=True)
+                    }
+                ),
             )
         )
     return tuple(rows)
@@ -84,15 +92,3 @@ def map_top(indices: WrinkleMap) -> float:
     """Upper end of the range of W2 that a map shows: at least 1, where wrinkles begin."""
     # Eight in a thousand faces may lie above: a single pinched triangle must not wash out a map.
     return max(1.0, float(np.quantile(indices.w2, 0.992)))
-
-
-def _net_figures(net: FloatArray, weight: FloatArray) -> dict[str, float]:
-    return {
-        "w2_net_mean": _mean(net, weight),
-        "w2_net_p95": quantile(net, weight, 0.95),
-        "w2_net_area_share": _mean((net > 1).astype(float), weight),
-    }
-
-
-def _mean(values: FloatArray, weight: FloatArray) -> float:
-    return float(values @ weight / weight.sum())

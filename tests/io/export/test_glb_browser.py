@@ -21,6 +21,7 @@ from PIL import Image
 from seatlook.io.export.writers import export_cover
 from seatlook.model import Appearance, Material, TextureMaps, WrinkleMap
 from seatlook.pbr import bake_grain
+from support.io_samples import fields_of
 from support.reference.lit_sheets import FABRIC, flat, sheet
 
 pytestmark = pytest.mark.browser
@@ -129,7 +130,7 @@ def written(tmp_path, *looks):
     w2 = np.maximum(-c / 20, 0.0)
     zero = np.zeros_like(c)
     indices = WrinkleMap(c=c, w1=c / 20, w2=w2, r_stretch=zero, w_stretch=zero, w_compression=w2)
-    export_cover(bake_grain(solution), indices, tmp_path / "seat.glb")
+    export_cover(bake_grain(solution), fields_of(indices), tmp_path / "seat.glb")
     return tmp_path / "seat.glb"
 
 

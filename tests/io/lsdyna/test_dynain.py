@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from seatlook import wrinkle
+from seatlook.chain.shell_states import ShellCriteria, shell_indices
 from seatlook.errors import InputError
 from seatlook.io.lsdyna.dynain import write_dynain
 from seatlook.io.lsdyna.keyword import read_keyword
-from seatlook.shells.strains import shell_indices
 from support.wrinkle_samples import shaped, wave
 
 
@@ -36,7 +36,7 @@ def test_indices_survive_the_file(tmp_path, unit, mode):
         *wrinkle.surface_strains(solution), solution.cover.thickness, 20.0, mode,
         strain_measure="logarithmic",
     )  # fmt: skip
-    read = shell_indices(result.shells, state, curvature=mode, c_threshold=20.0)
+    read = shell_indices(result.shells, state, ShellCriteria(curvature=mode, c_threshold=20.0))
     assert read.turned == 0
     np.testing.assert_allclose(read.indices.c, here.c, rtol=1e-6, atol=1e-5)
     np.testing.assert_allclose(read.indices.w2, here.w2, rtol=1e-6, atol=1e-6)

@@ -2,28 +2,41 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
+
 import pytest
 
+from seatlook.chain.assess import Assessment
 from seatlook.report import Check
-from seatlook.report.sections.in_short import above_one, missed, seen, wrinkled
+from seatlook.report.sections.in_short import missed, seen, wrinkled
 from seatlook.wrinkle import ZoneRow
+
+
+class Zones(Assessment):
+    """An assessment of which only the zones are given."""
+
+    def __init__(self, *zones: ZoneRow) -> None:
+        self.zones = zones
 
 
 def zone(name: str, *, share: float, stretch: float = 0.5, area: float = 0.01) -> ZoneRow:
     return ZoneRow(
-        zone=name, area=area, w2_mean=0.1, w2_p95=0.2 + share, w2_area_share=share,
-        w_stretch_mean=0.1, w_compression_mean=0.1, stretch_share=stretch, element_size=0.007,
+        zone=name,
+        area=area,
+        stretch_share=stretch,
+        element_size=0.007,
         w2_error=0.01,
-    )  # fmt: skip
+        figures=MappingProxyType({"w2_p95": 0.2 + share, "w2_area_share": share}),
+    )
 
 
 def test_a_smooth_cover_names_its_highest_zone():
-    zones = [zone("insert", share=0.0), zone("free edge", share=0.9)]
+    zones = Zones(zone("insert", share=0.0), zone("free edge", share=0.9))
     (sentence,) = wrinkled(zones)
     assert sentence.startswith("Nowhere is W2 above 1")
     assert sentence.endswith("Highest is insert with 0.200 (95 %).")
-    assert above_one(zones) == 0
-    assert list(wrinkled([])) == []
+    assert zones.share_above_one == 0
+    assert list(wrinkled(Zones())) == []
 
 
 @pytest.mark.parametrize(
@@ -35,7 +48,7 @@ def test_a_smooth_cover_names_its_highest_zone():
     ],
 )
 def test_a_wrinkled_cover_says_where_and_why(stretch, cause):
-    zones = [zone("insert", share=0.0, area=0.03), zone("seam", share=0.2, stretch=stretch)]
+    zones = Zones(zone("insert", share=0.0, area=0.03), zone("seam", share=0.2, stretch=stretch))
     (sentence,) = wrinkled(zones)
     assert sentence == f"W2 is above 1 on 5 % of the cover, most in seam: 20 % of it, {cause}."
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Sequence
 from pathlib import Path
 
 from seatlook.files import write_text
 from seatlook.io.export.vtp import voigt
-from seatlook.model import FloatArray, Solution, WrinkleMap
+from seatlook.model import Field, FloatArray, Solution
 
 
-def write_csv(solution: Solution, indices: WrinkleMap, path: Path) -> None:
-    """Write place, panel, zone, indices and strains of each face; the unit is in each head.
+def write_csv(solution: Solution, fields: Sequence[Field], path: Path) -> None:
+    """Write place, panel, zone, fields and strains of each face; the unit is in each head.
 
     ``u_mm, v_mm`` is the face's centre in its panel, ``x_mm, y_mm, z_mm`` in the world.
     """
@@ -24,12 +25,7 @@ def write_csv(solution: Solution, indices: WrinkleMap, path: Path) -> None:
         **{f"{c}_mm": where[:, i] for i, c in enumerate("xyz")},
         "rest_area_mm2": 1e6 * cover.rest_area,
         "thickness_mm": 1e3 * cover.thickness,
-        "c_per_mm": 1e-3 * indices.c,
-        "w1": indices.w1,
-        "w2": indices.w2,
-        "r_stretch": indices.r_stretch,
-        "w_stretch": indices.w_stretch,
-        "w_compression": indices.w_compression,
+        **{field.name: field.values for field in fields},
     }
     for side in ("top", "mid", "bottom"):
         strain = voigt(getattr(solution, f"strain_{side}"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from seatlook.files import write_bytes
-from seatlook.model import Appearance, FloatArray, IntArray, Solution, TextureMaps, WrinkleMap
+from seatlook.model import Appearance, Field, FloatArray, IntArray, Solution, TextureMaps
 
 # The library is typed, but these three are not.
 _surface: Any = TextureVisuals
@@ -21,10 +22,10 @@ _pbr: Any = PBRMaterial
 _export_glb: Any = export_glb
 
 
-def write_glb(solution: Solution, indices: WrinkleMap, path: Path) -> None:
+def write_glb(solution: Solution, fields: Sequence[Field], path: Path) -> None:
     """Write one mesh per panel with its material, y up, in metres.
 
-    The custom attributes ``_W2``, ``_W_STRETCH`` and ``_W_COMPRESSION`` are of the vertices:
+    Fields are custom attributes of the vertices:
     means over the faces around them in their own panel, weighted by rest area. Texture coordinates
     are those of the flat panel in metres, u along the warp, v upwards once read;
     KHR_texture_transform scales them to the maps. Sheen and coat are written as
@@ -47,13 +48,9 @@ def write_glb(solution: Solution, indices: WrinkleMap, path: Path) -> None:
             process=False,
             visual=_surface(uv=cover.rest[used], material=surfaces[material.name]),
         )
-        for key, values in (
-            ("_W2", indices.w2),
-            ("_W_STRETCH", indices.w_stretch),
-            ("_W_COMPRESSION", indices.w_compression),
-        ):
-            mean = vertex_means(values[mine], faces, area, len(used))
-            mesh.vertex_attributes[key] = mean.astype(np.float32)
+        for field in fields:
+            mean = vertex_means(field.values[mine], faces, area, len(used))
+            mesh.vertex_attributes[field.name] = mean.astype(np.float32)
         scene.add_geometry(mesh, geom_name=name, node_name=name)
 
     def write_materials(tree: dict[str, Any]) -> None:

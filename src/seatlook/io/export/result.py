@@ -26,6 +26,7 @@ from seatlook.model import (
     Anchor,
     Appearance,
     Cover,
+    Criteria,
     Curve,
     Fabric,
     Foam,
@@ -46,8 +47,8 @@ FORMAT_VERSION = 1
 _TYPES: dict[str, type] = {
     t.__name__: t
     for t in (
-        Anchor, Appearance, Cover, Curve, Fabric, Foam, FoamMaterial, Hem, Material, Points,
-        Solution, Stage, Stitching, TextureMaps, Thread,
+        Anchor, Appearance, Cover, Criteria, Curve, Fabric, Foam, FoamMaterial, Hem, Material,
+        Points, Solution, Stage, Stitching, TextureMaps, Thread,
     )
 }  # fmt: skip
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
@@ -11,13 +11,13 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from seatlook.files import write_text
-from seatlook.model import FloatArray, Solution, WrinkleMap
+from seatlook.model import Field, FloatArray, Solution
 
 _VTK_TYPES = {"float64": "Float64", "int64": "Int64"}
 
 
-def write_vtp(solution: Solution, indices: WrinkleMap, path: Path) -> None:
-    """Write positions [m] and, per face, indices, thickness [m], strains, panel and zone.
+def write_vtp(solution: Solution, fields: Sequence[Field], path: Path) -> None:
+    """Write positions [m] and, per face, fields, thickness [m], strains, panel and zone.
 
     Strains are E11, E22, E12 in warp/weft axes. ``rest`` and ``uv`` [m] are data of the points. The
     names of panels and zones are field data, in the order of their numbers.
@@ -39,7 +39,7 @@ def write_vtp(solution: Solution, indices: WrinkleMap, path: Path) -> None:
         "</FieldData>",
         f'<Piece NumberOfPoints="{n}" NumberOfPolys="{m}">',
         *_section("PointData", {"rest": cover.rest, "uv": cover.uv}),
-        *_section("CellData", cell_data(solution, indices)),
+        *_section("CellData", cell_data(solution, fields)),
         *_section("Points", {"Points": solution.positions}),
         *_section(
             "Polys",
@@ -52,16 +52,11 @@ def write_vtp(solution: Solution, indices: WrinkleMap, path: Path) -> None:
     write_text(path, "\n".join(rows) + "\n")
 
 
-def cell_data(solution: Solution, indices: WrinkleMap) -> dict[str, Any]:
+def cell_data(solution: Solution, fields: Sequence[Field]) -> dict[str, Any]:
     """Return name -> array (m,) or (m, 3) of what is exported for each face."""
     cover = solution.cover
     return {
-        "_W2": indices.w2,
-        "_W_STRETCH": indices.w_stretch,
-        "_W_COMPRESSION": indices.w_compression,
-        "C": indices.c,
-        "W1": indices.w1,
-        "R_STRETCH": indices.r_stretch,
+        **{field.name: field.values for field in fields},
         "thickness": cover.thickness,
         "panel": cover.panel,
         "zone": cover.zone,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from seatlook.errors import InputError
@@ -12,34 +12,40 @@ from seatlook.io.export.result import write_result
 from seatlook.io.export.vtp import write_vtp
 from seatlook.io.lsdyna.dynain import write_dynain
 from seatlook.io.schema import shown
-from seatlook.model import Solution, WrinkleMap
+from seatlook.model import Field, Solution
 
 # A new export is one writer here.
-WRITERS: dict[str, Callable[[Solution, WrinkleMap, Path], None]] = {
+WRITERS: dict[str, Callable[[Solution, Sequence[Field], Path], None]] = {
     ".vtp": write_vtp,
     ".csv": write_csv,
     ".glb": write_glb,
     # A dynain file has no place for indices; its reader computes them from the strains.
-    ".k": lambda solution, indices, path: write_dynain(solution, path),
+    ".k": lambda solution, fields, path: write_dynain(solution, path),
     # Of shells from elsewhere, to be drawn and scored as a cover.
-    ".npz": lambda solution, indices, path: write_result(solution, path),
+    ".npz": lambda solution, fields, path: write_result(solution, path),
 }
 
 
-def export_cover(solution: Solution, indices: WrinkleMap, path: Path) -> None:
-    """Write a solved cover and its indices in the format that the path's ending names.
+def export_cover(solution: Solution, fields: Sequence[Field], path: Path) -> None:
+    """Write a solved cover with some fields in the format that the path's ending names.
+
+    Parameters
+    ----------
+    fields : of its faces, such as ``Assessment.fields``; their names are the same in all formats
 
     Raises
     ------
     InputError
-        When there is no such format, or the indices are of another cover.
+        There is no such format, or the fields are of another cover.
     """
     writer = WRITERS.get(path.suffix.lower())
     if writer is None:
         expected = f"one of {', '.join(WRITERS)}"
         raise InputError.single("file", got=shown(path.suffix), expected=expected, file=path)
-    if len(indices.c) != len(solution.cover.faces):
-        raise InputError.single(
-            "indices", got=f"{len(indices.c)} faces", expected=f"{len(solution.cover.faces)}"
-        )
-    writer(solution, indices, path)
+    count = len(solution.cover.faces)
+    for field in fields:
+        if len(field.values) != count:
+            raise InputError.single(
+                f"field {field.name}", got=f"{len(field.values)} faces", expected=str(count)
+            )
+    writer(solution, fields, path)

@@ -23,6 +23,7 @@ DEEPEST_WIRE = 0.030  # m
 _SPACING = 0.005  # of the points at which a wire is looked at [m]
 _ONE_PLANE = 0.001  # distance of panels that lie on each other [m]
 _OVERLAP = 0.01  # share of the smaller panel
+_FARTHEST = 10.0  # times the diagonal of the foam, from its middle to where a panel starts
 _nearest: Any = trimesh.triangles.closest_point  # one point for each of (m, 3, 3) triangles
 
 
@@ -73,6 +74,22 @@ def check_overlap(
                 ("placement", b.name),
                 f"{1e4 * shared:.1f} cm2 on {a.name}, in the same plane",
                 "panels beside or above each other",
+            )
+
+
+def check_distance(document: Document, placement: Mapping[str, Pose], foam: Foam | None) -> None:
+    """Report panels that start so far away that they cannot be meant for this foam."""
+    if foam is None:
+        return
+    low, high = foam.vertices.min(axis=0), foam.vertices.max(axis=0)
+    size = float(np.linalg.norm(high - low))
+    for name, pose in placement.items():
+        away = float(np.linalg.norm(pose.translation - (low + high) / 2))
+        if not away <= _FARTHEST * size:
+            document.report(
+                ("placement", name, "translation_mm"),
+                f"a place {away:.3g} m from the middle of the foam",
+                f"at most {_FARTHEST * size:.3g} m, {_FARTHEST:g} times the foam's size",
             )
 
 

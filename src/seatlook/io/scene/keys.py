@@ -21,7 +21,8 @@ from seatlook.io.schema import (
     Texts,
 )
 from seatlook.model.cover import RAMPS
-from seatlook.model.scene import MEASURES, SCORE_MEASURES
+from seatlook.model.scene import SCORE_MEASURES
+from seatlook.wrinkle import INDICES
 
 AS_BUILT = "as built"
 _NAME = Text(required=True)
@@ -150,5 +151,14 @@ KEYS: dict[str, Kind] = {
             "c_threshold_per_mm": Number(above=0, scale=1 / MM),
         }
     ),
-    "accept": Named(Table(dict.fromkeys((*MEASURES, *SCORE_MEASURES), Number(low=0)))),
 }
+
+
+def scene_keys() -> dict[str, Kind]:
+    """All keys: those above, and the limits, of which there are as many as the registry has."""
+    limits = {
+        figure: Number(low=0) if index.limits[0] >= 0 else Number()
+        for index in INDICES.values()
+        for figure in index.figures
+    } | dict.fromkeys(SCORE_MEASURES, Number(low=0))
+    return KEYS | {"accept": Named(Table(limits))}

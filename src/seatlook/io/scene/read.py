@@ -19,9 +19,9 @@ from seatlook.io.mesh import read_foam
 from seatlook.io.pattern.dxf import SMALLEST_NOTCH
 from seatlook.io.pattern.seams import read_pattern
 from seatlook.io.scene.changes import change
-from seatlook.io.scene.checks import check_hem, check_overlap, check_wires
+from seatlook.io.scene.checks import check_distance, check_hem, check_overlap, check_wires
 from seatlook.io.scene.files import SceneFiles
-from seatlook.io.scene.keys import AS_BUILT, KEYS
+from seatlook.io.scene.keys import AS_BUILT, scene_keys
 from seatlook.io.scene.ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
 from seatlook.io.scene.views import make_cameras, make_rigs
 from seatlook.io.schema import known, read_table
@@ -39,9 +39,8 @@ from seatlook.model import (
     Scene,
     Thread,
 )
+from seatlook.model.criteria import DEFAULT_THRESHOLD
 
-# Literal eq. (1) halves the curvature of a free fold, so its threshold is half as well [1/m].
-_C_THRESHOLD = {"tensor": 20.0, "paper": 10.0}
 _AXES = {
     sign + letter: (1.0 if sign == "+" else -1.0) * np.eye(3)[number]
     for number, letter in enumerate("xyz")
@@ -65,7 +64,7 @@ def load_scene(path: Path | str, *, changes: Iterable[str] = ()) -> Scene:
     """
     document = read_document(Path(path))
     change(document, changes)
-    return _Reader(document, read_table(document, KEYS), SceneFiles(document)).scene()
+    return _Reader(document, read_table(document, scene_keys()), SceneFiles(document)).scene()
 
 
 @dataclass(slots=True)
@@ -95,7 +94,7 @@ class _Reader:
             smallest_notch=row["mesh"]["smallest_notch_mm"],
             seed=row["mesh"]["seed"],
             curvature=curvature,
-            c_threshold=row["wrinkle"]["c_threshold_per_mm"] or _C_THRESHOLD[curvature],
+            c_threshold=row["wrinkle"]["c_threshold_per_mm"] or DEFAULT_THRESHOLD[curvature],
             **parts,
         )
 
@@ -121,6 +120,7 @@ class _Reader:
         }
         check_wires(document, row, pattern, foam)
         check_overlap(document, pattern, parts["placement"])
+        check_distance(document, parts["placement"], foam)
         check_hem(document, pattern, row["hem"])
         with document.blame(("thread",)):
             parts["thread"] = _thread(row["thread"])

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from seatlook.chain.evaluation import Evaluation
 from seatlook.model.table import Table
+from seatlook.model.zones import FREE_EDGE
 from seatlook.report.page.types import DesignSection
-from seatlook.results.deviation import seam_lines
-from seatlook.results.gap import ZoneGap, zone_gaps
+from seatlook.results.gap import ZoneGap
 
 DISTANCE_HEADS = (
     "zone",
@@ -17,17 +17,15 @@ DISTANCE_HEADS = (
     "highest [mm]",
     "measured [%]",
 )
-FILES = ("shape.csv", "seam-lines.csv")
 
 
 def design_section(evaluation: Evaluation) -> DesignSection | None:
     """Gather the section; None where the scene names no design surface."""
-    design = evaluation.scene.design
-    if design is None or evaluation.deviation is None:
+    design, assessment = evaluation.case.scene.design, evaluation.case.assessment
+    if design is None:
         return None
-    seams = seam_lines(evaluation.solution, design)
     return DesignSection(
-        zones=distance_table(zone_gaps(evaluation.solution, evaluation.deviation)),
+        zones=distance_table(assessment.zone_deviations),
         seams=Table(
             heads=("seam", "length [mm]", "mean [mm]", "largest [mm]"),
             rows=tuple(
@@ -37,7 +35,7 @@ def design_section(evaluation: Evaluation) -> DesignSection | None:
                     None if row.mean is None else 1e3 * row.mean,
                     None if row.largest is None else 1e3 * row.largest,
                 )
-                for row in sorted(seams, key=lambda row: -(row.largest or 0.0))
+                for row in sorted(assessment.seam_lines, key=lambda row: -(row.largest or 0.0))
             ),
         ),
         visible=design.visible,
@@ -59,6 +57,6 @@ def distance_table(rows: tuple[ZoneGap, ...]) -> Table:
                 100 * row.measured,
             )
             for row in sorted(rows, key=lambda row: -row.rms)
-            if row.zone != "free edge"
+            if row.zone != FREE_EDGE
         ),
     )

@@ -2,39 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
+from seatlook.chain.assess import Assessment
 from seatlook.model.table import number
+from seatlook.model.zones import FREE_EDGE
 from seatlook.report.page.types import Check
-from seatlook.wrinkle import ZoneRow
 
 _MOSTLY = 0.6  # share of W2 from which one cause is named alone
 
 
-def wrinkled(zones: Iterable[ZoneRow]) -> Iterator[str]:
+def wrinkled(assessment: Assessment) -> Iterator[str]:
     """Where W2 is above 1, and why; free edges, which are clamped or trimmed, do not count."""
-    inner = [row for row in zones if row.zone != "free edge"]
+    inner = [row for row in assessment.zones if row.zone != FREE_EDGE]
     if not inner:
         return
-    share = above_one(inner)
+    share = assessment.share_above_one
     if share == 0:
-        worst = max(inner, key=lambda row: row.w2_p95)
+        worst = max(inner, key=lambda row: row["w2_p95"])
         yield (
             "Nowhere is W2 above 1: no valley is as sharp as the threshold. Highest is "
-            f"{worst.zone} with {number(worst.w2_p95)} (95 %)."
+            f"{worst.zone} with {number(worst['w2_p95'])} (95 %)."
         )
         return
-    worst = max(inner, key=lambda row: row.w2_area_share * row.area)
+    worst = max(inner, key=lambda row: row["w2_area_share"] * row.area)
     yield (
         f"W2 is above 1 on {number(100 * share)} % of the cover, most in {worst.zone}: "
-        f"{number(100 * worst.w2_area_share)} % of it, {_cause(worst.stretch_share)}."
+        f"{number(100 * worst['w2_area_share'])} % of it, {_cause(worst.stretch_share)}."
     )
-
-
-def above_one(zones: Iterable[ZoneRow]) -> float:
-    """Share of the area of zones on which W2 is above 1."""
-    pairs = [(row.area, row.w2_area_share) for row in zones if row.zone != "free edge"]
-    return sum(a * s for a, s in pairs) / sum(a for a, _ in pairs)
 
 
 def _cause(stretch_share: float) -> str:

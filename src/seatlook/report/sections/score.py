@@ -12,6 +12,7 @@ import numpy as np
 
 from seatlook.chain.evaluation import Evaluation
 from seatlook.errors import InputError
+from seatlook.files import file_names
 from seatlook.model import Limit
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES
@@ -20,8 +21,8 @@ from seatlook.pbr.maps.pixel_map import render_pixel_map
 from seatlook.report.page.types import Check, MapView, ScoreSection
 from seatlook.visibility.light_search import WorstLight
 from seatlook.visibility.observer import OBSERVER
-from seatlook.visibility.scoring import SceneScore, score_scene
-from seatlook.visibility.view import NULL_LIMIT, View
+from seatlook.visibility.scoring import SceneScore
+from seatlook.visibility.view import NULL_LIMIT
 
 _LEAST_TOP = 3.0  # of a map's range: the first value of D that counts as visible
 
@@ -31,10 +32,9 @@ def visibility(evaluation: Evaluation, progress: Progress | None = None) -> Scor
 
     Limits of [accept] on a score that cannot be given are missed.
     """
-    scene = evaluation.scene
+    scene = evaluation.case.scene
     try:
-        view = View(evaluation.solution, evaluation.camera)
-        found = score_scene(scene, view, evaluation.indices, progress=progress or silent)
+        found = evaluation.case.score(progress=progress or silent)
     except InputError as error:
         limits = [limit for limit in scene.limits if limit.measure in SCORE_MEASURES]
         return ScoreSection(
@@ -164,6 +164,7 @@ def draw_maps(
     """Draw D of cells (texture, rig) below ``folder``, all with one range."""
     top = max(_LEAST_TOP, *(sight.score.p995 for sight in score.grid.sights.values()))
     view, maps = score.view, []
+    names = file_names(f"{texture}\n{rig}" for texture, rig in score.grid.sights)
     for texture, rig in cells:
         found = score.grid.sights[texture, rig].score
         picture = render_pixel_map(
@@ -174,8 +175,9 @@ def draw_maps(
             value_range=(0.0, top),
             unit="1",
         )
-        path = f"maps/visibility-{_slug(texture)}-{_slug(rig)}.png"
-        picture.save(folder / path)
+        name = names[f"{texture}\n{rig}"]
+        path = f"maps/visibility-{name}.png"
+        picture.save(folder / path, run=view.solution.cover.scene_digest)
         maps.append(
             MapView(
                 name=f"D of {texture}, {rig}",
@@ -273,8 +275,3 @@ def _check(limit: Limit, value: str, kept: bool) -> Check:
     return Check(
         name=f"{limit.zone}: {limit.measure}", value=value, limit=number(limit.maximum), kept=kept
     )
-
-
-def _slug(name: str) -> str:
-    """Make a file name of a name."""
-    return "".join(c if c.isalnum() else "-" for c in name.lower()).strip("-")

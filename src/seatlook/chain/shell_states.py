@@ -3,46 +3,105 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict, Unpack
 
 import numpy as np
 
+from seatlook.chain.assess import wrinkle_map
 from seatlook.errors import InputError, Problem
 from seatlook.io.lsdyna.shells import read_shells
-from seatlook.model import FloatArray, IntArray, ShellResult, ShellState, WrinkleMap
-from seatlook.model.scene import CurvatureMode
+from seatlook.mesh.statistics import quantile
+from seatlook.model import (
+    Criteria,
+    CurvatureMode,
+    FloatArray,
+    IntArray,
+    ShellResult,
+    Shells,
+    ShellState,
+    StrainMeasure,
+    WrinkleMap,
+)
+from seatlook.model.criteria import DEFAULT_THRESHOLD
 from seatlook.model.shells import StrainAxes
-from seatlook.shells.strains import DEFAULT_THRESHOLD, ShellWrinkles, shell_indices
-from seatlook.wrinkle import map_top, quantile
-from seatlook.wrinkle.equations import StrainMeasure
+from seatlook.shells.strains import ShellStrains, shell_strains
+from seatlook.wrinkle import map_top
 
 _PER_MM = 1e-3  # 1/m in 1/mm
 
 
+class Reading(TypedDict, total=False):
+    """How a file of shells is read, see ``seatlook.io.read_shells``."""
+
+    parts: Sequence[int | str] | None
+    thickness: float | None
+    length_unit: str
+    strain_axes: StrainAxes
+    reference: Path | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShellCriteria:
+    """How shells of another program are assessed.
+
+    Parameters
+    ----------
+    curvature : "paper" (eq. 1 as printed) or "tensor"
+    c_threshold : float [1/m]      None: 10 for "paper", 20 for "tensor"
+    facing : (3,)                  the visible side, see ``shell_strains``
+    strain_measure : "green" or "logarithmic"; without it as the file has them
+    """
+
+    curvature: CurvatureMode = "paper"
+    c_threshold: float | None = None
+    facing: FloatArray | None = None
+    strain_measure: StrainMeasure | None = None
+
+    @property
+    def threshold(self) -> float:
+        """C_threshold [1/m] that is used."""
+        return DEFAULT_THRESHOLD[self.curvature] if self.c_threshold is None else self.c_threshold
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShellWrinkles(ShellStrains):
+    """Strains of one state with its indices, whose fields are (k,)."""
+
+    indices: WrinkleMap
+
+
+def shell_indices(
+    shells: Shells, state: ShellState, criteria: ShellCriteria | None = None
+) -> ShellWrinkles:
+    """Evaluate eqs. (1) to (6) on the shells of one state.
+
+    Raises
+    ------
+    InputError
+        As ``seatlook.shells.strains.shell_strains``.
+    """
+    chosen = criteria or ShellCriteria()
+    strains = shell_strains(
+        shells, state, facing=chosen.facing, strain_measure=chosen.strain_measure
+    )
+    # The strains are in the wanted measure already, and are taken as they are.
+    of_all = Criteria(curvature=chosen.curvature, thresholds=(chosen.threshold,))
+    return ShellWrinkles(
+        **{f.name: getattr(strains, f.name) for f in fields(ShellStrains)},
+        indices=wrinkle_map(of_all, strains.strains),
+    )
+
+
 def wrinkle_states(
-    path: Path,
-    *,
-    parts: Sequence[int | str] | None = None,
-    curvature: CurvatureMode = "paper",
-    c_threshold: float | None = None,
-    thickness: float | None = None,
-    length_unit: str = "mm",
-    strain_axes: StrainAxes = "global",
-    reference: Path | None = None,
-    facing: FloatArray | None = None,
-    strain_measure: StrainMeasure | None = None,
+    path: Path, criteria: ShellCriteria | None = None, **reading: Unpack[Reading]
 ) -> dict[str, Any]:
     """Evaluate all states of a d3plot or keyword deck; the result is fit for JSON.
 
     Parameters
     ----------
-    parts : part numbers or titles; without it all shells
-    curvature : "paper" (eq. 1 as printed) or "tensor"
-    c_threshold : float [1/m]      default 10 for "paper", 20 for "tensor"
-    thickness : float [m]          for files that do not hold it
-    facing : (3,)                  the visible side, see ``shell_indices``
-    strain_measure : "green" or "logarithmic"; without it as the file has them
+    reading : parts, thickness, length_unit, strain_axes, reference: as for ``io.read_shells``
 
     Returns
     -------
@@ -56,54 +115,38 @@ def wrinkle_states(
     Raises
     ------
     InputError
-        See ``seatlook.io.lsdyna.shells.read_shells`` and ``seatlook.shells.strains.shell_indices``.
+        As ``seatlook.io.read_shells`` and ``shell_indices``.
     """
-    result = read_shells(
-        path, parts=parts, thickness=thickness, length_unit=length_unit,
-        strain_axes=strain_axes, reference=reference,
-    )  # fmt: skip
-    threshold = DEFAULT_THRESHOLD[curvature] if c_threshold is None else c_threshold
-    evaluated = evaluated_states(
-        path, result, curvature=curvature, c_threshold=threshold, facing=facing,
-        strain_measure=strain_measure,
-    )  # fmt: skip
+    chosen = criteria or ShellCriteria()
+    result = read_shells(path, **reading)
     return {
         "file": str(path),
-        "curvature": curvature,
-        "c_threshold_per_mm": threshold * _PER_MM,
+        "curvature": chosen.curvature,
+        "c_threshold_per_mm": chosen.threshold * _PER_MM,
         "shells": len(result.shells),
         "notes": list(result.notes),
-        "states": [state_figures(result, *pair) for pair in evaluated],
+        "states": [state_figures(result, *pair) for pair in evaluated_states(path, result, chosen)],
     }
 
 
 def evaluated_states(
-    path: Path,
-    result: ShellResult,
-    *,
-    curvature: CurvatureMode,
-    c_threshold: float,
-    facing: FloatArray | None = None,
-    strain_measure: StrainMeasure | None = None,
+    path: Path, result: ShellResult, criteria: ShellCriteria
 ) -> Iterator[tuple[ShellState, ShellWrinkles]]:
     """Evaluate one state after the other, so that only one needs to be in memory.
 
     Raises
     ------
     InputError
-        As ``seatlook.shells.strains.shell_indices``, with the file and the number of the state.
+        As ``shell_indices``, with the file and the number of the state.
     """
     for index, state in enumerate(result):
         try:
-            yield state, shell_indices(
-                result.shells, state, curvature=curvature, c_threshold=c_threshold, facing=facing,
-                strain_measure=strain_measure,
-            )  # fmt: skip
+            yield state, shell_indices(result.shells, state, criteria)
         except InputError as error:
             raise InputError(_placed(p, path, index) for p in error.problems) from error
 
 
-class JudgedStates(NamedTuple):
+class AssessedStates(NamedTuple):
     """What all states of a file give.
 
     Parameters
@@ -118,39 +161,28 @@ class JudgedStates(NamedTuple):
     top: float
 
 
-def judged_states(
-    path: Path,
-    result: ShellResult,
-    *,
-    kept: Collection[int],
-    curvature: CurvatureMode,
-    c_threshold: float,
-    facing: FloatArray | None = None,
-    strain_measure: StrainMeasure | None = None,
-) -> JudgedStates:
-    """Evaluate all states, keep those to be drawn.
+def assess_states(
+    path: Path, result: ShellResult, criteria: ShellCriteria, *, drawn: Collection[int]
+) -> AssessedStates:
+    """Evaluate all states; hold on to those to be drawn.
 
     Raises
     ------
     InputError
-        A state to keep that is not there; else as ``evaluated_states``.
+        A state to draw that is not there; else as ``evaluated_states``.
     """
-    absent = sorted(set(kept) - set(range(len(result))))
+    absent = sorted(set(drawn) - set(range(len(result))))
     if absent:
         raise InputError.single(
             "state", got=str(absent[0]), expected=f"0 to {len(result) - 1}", file=path
         )
-    evaluated = evaluated_states(
-        path, result, curvature=curvature, c_threshold=c_threshold, facing=facing,
-        strain_measure=strain_measure,
-    )  # fmt: skip
     figures, states, top = [], {}, 1.0
-    for number, (state, wrinkles) in enumerate(evaluated):
+    for number, (state, wrinkles) in enumerate(evaluated_states(path, result, criteria)):
         figures.append(state_figures(result, state, wrinkles))
         top = max(top, map_top(wrinkles.indices))
-        if number in kept:
+        if number in drawn:
             states[number] = state, wrinkles
-    return JudgedStates(figures, states, top)
+    return AssessedStates(figures, states, top)
 
 
 def _placed(problem: Problem, path: Path, index: int) -> Problem:

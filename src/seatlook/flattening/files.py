@@ -1,0 +1,125 @@
+"""A flattened pattern in files: DXF, seams, poses, lengths of the seams, pictures of the strain."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal, TypedDict, Unpack
+
+from seatlook import io
+from seatlook.errors import InputError
+from seatlook.files import write_text
+from seatlook.flattening.cutting import cut_along
+from seatlook.flattening.flatten import Flattened, flatten
+from seatlook.flattening.strain_map import write_strain_maps
+from seatlook.flattening.surface import DesignSurface
+from seatlook.io.toml import toml_key
+from seatlook.model import Fabric, Pose
+
+PATTERN, SEAMS, PLACEMENT = "pattern.dxf", "seams.toml", "placement.toml"
+
+
+class FlattenChoices(TypedDict, total=False):
+    """How a design surface is flattened.
+
+    ``seam_lines``: curves file with lines along which the surface is cut into panels; ``unit`` of
+    the surface: "mm" or "m"; ``ease``: seam -> share by which one line is longer; ``short``: panel
+    -> share by which it is narrower across its grain; ``tension``: share by which all panels are
+    smaller; ``allowance`` [m]; ``fabric`` that takes the least strain energy.
+    """
+
+    seam_lines: Path | None
+    unit: Literal["mm", "m"]
+    ease: Mapping[str, float]
+    short: Mapping[str, float]
+    tension: float
+    allowance: float
+    fabric: Fabric | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlattenedFiles:
+    """A flattened pattern, and the pictures of the strain that is left in its panels."""
+
+    flat: Flattened
+    pictures: tuple[Path, ...]
+
+
+def flatten_surface(
+    surface: Path | str, out: Path | str, **choices: Unpack[FlattenChoices]
+) -> FlattenedFiles:
+    """Flatten the panels of a design surface, and write a pattern of them.
+
+    Leaves ``pattern.dxf``, ``seams.toml``, ``placement.toml``, ``seam-lengths.csv`` and pictures of
+    the strain; where it is cut along lines also ``panels.obj``, a group per panel.
+
+    Raises
+    ------
+    InputError
+        A surface or lines that cannot be read, cut or flattened; names that do not exist.
+    """
+    folder, lines = Path(out), choices.get("seam_lines")
+    form = read_design(Path(surface), unit=choices.get("unit", "mm"), seam_lines=lines)
+    fabric = choices.get("fabric")
+    flat = flatten(
+        form,
+        fabrics={} if fabric is None else dict.fromkeys(form.panel_names, fabric),
+        allowance=choices.get("allowance", 0.010),
+        ease=choices.get("ease", MappingProxyType({})),
+        short=choices.get("short", MappingProxyType({})),
+        tension=choices.get("tension", 0.0),
+    )
+    if lines is not None:
+        write_panels(form, folder / "panels.obj")
+    write_flat_pattern(flat, folder)
+    write_text(folder / PLACEMENT, placement_tables(flat.placement) + "\n")
+    _write_seam_lengths(flat, folder / "seam-lengths.csv")
+    return FlattenedFiles(flat=flat, pictures=write_strain_maps(form, flat, folder))
+
+
+def read_design(
+    path: Path, *, unit: Literal["mm", "m"] = "mm", seam_lines: Path | None = None
+) -> DesignSurface:
+    """Read a design surface, and cut it along the lines of a file, if there is one."""
+    ungrouped = None if seam_lines is None else "PANEL"
+    form = DesignSurface(**io.read_surface(path, unit=unit, ungrouped=ungrouped)._asdict())
+    if seam_lines is None:
+        return form
+    lines = io.read_curves(seam_lines)
+    try:
+        return cut_along(form, lines)
+    except InputError as error:
+        raise InputError(
+            problem if problem.file else replace(problem, file=seam_lines)
+            for problem in error.problems
+        ) from None
+
+
+def write_panels(form: DesignSurface, path: Path) -> None:
+    """Write a design surface as OBJ, a group per panel."""
+    io.write_surface(io.GroupedMesh(form.vertices, form.faces, form.panel, form.panel_names), path)
+
+
+def write_flat_pattern(flat: Flattened, out: Path) -> None:
+    """Write ``pattern.dxf`` and ``seams.toml``."""
+    io.write_dxf(flat.pattern, out / PATTERN, style="seatlook")
+    io.write_seams(flat.pattern, out / SEAMS)
+
+
+def placement_tables(placement: Mapping[str, Pose]) -> str:
+    """[placement.PANEL] tables as they stand in a scene."""
+    return "\n\n".join(
+        f"[placement.{toml_key(name)}]\n"
+        f"rotation = {pose.rotation.tolist()}\n"
+        f"translation_mm = {(1e3 * pose.translation).tolist()}"
+        for name, pose in placement.items()
+    )
+
+
+def _write_seam_lengths(flat: Flattened, path: Path) -> None:
+    """Write both lines of every seam, and that on the design, in mm."""
+    rows = [(s.seam, s.a, s.b, s.difference, s.design) for s in flat.seams]
+    heads = ("seam", "a_mm", "b_mm", "difference_mm", "design_mm")
+    io.write_table(path, heads, [(name, *(1e3 * v for v in values)) for name, *values in rows])

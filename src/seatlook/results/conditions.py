@@ -1,0 +1,62 @@
+"""What must hold before a result is believed, with the values that were reached."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from seatlook.model import Solution
+from seatlook.solver.process import verdict
+from seatlook.solver.process.process import RESIDUAL
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Condition:
+    """One condition of "converged"; value and limit in ``unit``, "" for a number."""
+
+    figure: str
+    meaning: str
+    value: float
+    limit: float
+    unit: str
+
+    @property
+    def kept(self) -> bool:
+        """Whether the value is at most the limit."""
+        return self.value <= self.limit
+
+
+# figure -> what it is, its limit, factor to the unit, unit
+_CONDITIONS: Mapping[str, tuple[str, float, float, str]] = MappingProxyType(
+    {
+        "residual": ("out-of-balance force over mean elastic force", RESIDUAL, 1.0, ""),
+        "kinetic_ratio": ("kinetic over elastic energy", verdict.KINETIC, 1.0, ""),
+        "seam_gap_max": ("largest seam gap", verdict.SEAM_GAP, 1e3, "mm"),
+        "hook_gap_max": ("largest distance of a hook from its wire", verdict.ANCHOR_GAP, 1e3, "mm"),
+        "frame_gap_max": ("largest distance of a free edge", verdict.ANCHOR_GAP, 1e3, "mm"),
+        "contact_compression_max": (
+            "foam pressed, share of its thickness", verdict.COMPRESSION, 1e2, "%"
+        ),
+        "contact_resultant_error": (
+            "foam pressure against resultant", verdict.RESULTANT, 1e2, "%"
+        ),
+        "intersecting_pairs": ("pairs of triangles that pass through each other", 0.0, 1.0, ""),
+        "hem_crossing_pairs": ("triangles of a folded allowance that come through", 0.0, 1.0, ""),
+    }
+)  # fmt: skip
+
+
+def conditions(solution: Solution) -> tuple[Condition, ...]:
+    """Conditions that a result has a value of: a cover without foam touches none."""
+    return tuple(
+        Condition(
+            figure=name,
+            meaning=meaning,
+            value=factor * solution.figures[name],
+            limit=factor * limit,
+            unit=unit,
+        )
+        for name, (meaning, limit, factor, unit) in _CONDITIONS.items()
+        if name in solution.figures
+    )

@@ -1,0 +1,187 @@
+"""A seat in your hands: the chain of its scene, compared with others, evaluated into a page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from seatlook import io
+from seatlook.assembly import with_mesh
+from seatlook.chain.case import Case
+from seatlook.chain.evaluation import LEFT, Evaluation, evaluate_case
+from seatlook.chain.film import film
+from seatlook.chain.precision import Precise, solve_to
+from seatlook.chain.run_folder import run_folder
+from seatlook.comparison.compare import Comparison, Variant, compare
+from seatlook.errors import InputError
+from seatlook.model import Camera, Rig, Scene
+from seatlook.model.progress import Progress, silent
+from seatlook.model.scene import SCORE_MEASURES
+from seatlook.report.evaluation_page import write_report
+from seatlook.report.page.types import Check, ScoreSection
+from seatlook.report.sections.score import visibility
+
+_NO_SCENES = (".dxf", ".obj", ".stl", ".ply", ".npz")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """What an evaluation left: the page, what was drawn, and the score if there is one."""
+
+    page: Path
+    evaluation: Evaluation
+    score: ScoreSection | None
+
+    @property
+    def missed(self) -> tuple[str, ...]:
+        """A sentence for every limit of [accept] that is missed."""
+        figures = tuple(
+            f"{v.limit.zone}: {v.limit.measure} is {v.value:.4g}, "
+            f"the limit is {v.limit.maximum:.4g}"
+            for v in self.evaluation.verdicts
+            if not v.kept
+        )
+        return (*figures, *missed(self.score.checks if self.score else ()))
+
+
+def missed(checks: Iterable[Check]) -> tuple[str, ...]:
+    """A sentence for every check that is missed."""
+    return tuple(f"{c.name} is {c.value}, the limit is {c.limit}" for c in checks if not c.kept)
+
+
+class Seat(Case):
+    """A case with what needs more than one, or a page.
+
+    Examples
+    --------
+    >>> seat = open("seat.toml")                                     # doctest: +SKIP
+    >>> seat.solve().status                                          # doctest: +SKIP
+    'converged'
+    >>> seat.compare("eased.toml").table("w2_mean")                  # doctest: +SKIP
+    >>> seat.evaluate("out/seat").page                               # doctest: +SKIP
+    PosixPath('out/seat/index.html')
+    """
+
+    def compare(
+        self, *others: Variant, keep: Path | str | None = None, progress: Progress = silent
+    ) -> Comparison:
+        """Put other seats beside this one: scenes, their files or cases.
+
+        Raises
+        ------
+        InputError, SolverError, RenderError
+        """
+        return compare([self, *others], keep=keep, progress=progress)
+
+    def evaluate(
+        self,
+        out: Path | str,
+        *,
+        resume: bool = False,
+        score: bool = True,
+        single_file: bool = False,
+        force: bool = False,
+        progress: Progress = silent,
+    ) -> Outcome:
+        """Solve, assess and draw into a folder, and write its page last.
+
+        Parameters
+        ----------
+        resume : take the result in the folder if it may stand for solving the scene
+        score : score how visible the wrinkles are; always where [accept] limits it
+        single_file : put the images into the page
+        force : overwrite files that seatlook did not write, or that were edited
+
+        Raises
+        ------
+        InputError
+            Before the solve: what ``check`` finds, a folder in use, files of the user's in it.
+        NoOffscreenContext, SolverError, RenderError
+        """
+        folder = Path(out)
+        writes = [name for name in LEFT if not (resume and name == "result.npz")]
+        with run_folder(folder, writes=writes, page=True, force=force):
+            evaluation = evaluate_case(self, folder, resume=resume, progress=progress)
+            limited = any(limit.measure in SCORE_MEASURES for limit in self.scene.limits)
+            section = visibility(evaluation, progress) if score or limited else None
+            page = write_report(evaluation, score=section, single_file=single_file)
+        return Outcome(page=page, evaluation=evaluation, score=section)
+
+    def precision(self, tolerance: float, *, progress: Progress = silent) -> Precise:
+        """Solve no finer than a tolerance of the zone means asks for, and measure the error.
+
+        Raises
+        ------
+        InputError, SolverError
+        """
+        return solve_to(self.scene, tolerance, progress=progress)
+
+    def timeline(
+        self,
+        stages: Path,
+        out: Path,
+        *,
+        rig: str | Rig | None = None,
+        camera: str | Camera | None = None,
+        width: int = 480,
+        seconds: float = 5.0,
+    ) -> tuple[Path, Path]:
+        """Draw the making from the stages that ``solve_in_stages`` left: a strip, an animation.
+
+        Parameters
+        ----------
+        rig : lights of the strip; None for a preview without them, as in the animation
+        """
+        return film(
+            self.solution,
+            stages,
+            out,
+            camera=self.camera(camera),
+            rig=None if rig is None else self.rig(rig),
+            width=width,
+            seconds=seconds,
+        )
+
+
+def open(
+    scene: Path | str | Scene,
+    *,
+    changes: Iterable[str] = (),
+    seed: int | None = None,
+    element_size: float | None = None,
+    result: Path | str | None = None,
+) -> Seat:
+    """Open a seat.
+
+    Parameters
+    ----------
+    scene : scene file, or a scene
+    changes : values set over those of the file, such as ``"mesh.seed=3"``
+    seed, element_size : instead of the scene's; float [m], panels' own sizes scale with it
+    result : result file whose shape is taken as it is; without it the seat is solved when asked
+
+    Raises
+    ------
+    InputError
+        All faults of the scene and its files.
+    """
+    read = scene if isinstance(scene, Scene) else _read(Path(scene), changes)
+    return Seat(
+        with_mesh(read, element_size=element_size, seed=seed),
+        solution=None if result is None else io.read_result(result),
+    )
+
+
+def _read(path: Path, changes: Iterable[str]) -> Scene:
+    if path.suffix.lower() in _NO_SCENES:
+        raise InputError.single(
+            "scene", got=path.name, expected="a scene file (.toml)",
+            hint="make one of a pattern and a foam with: seatlook init",
+        )  # fmt: skip
+    return io.load_scene(path, changes=changes)
+
+
+def evaluate(scene: Path | str | Scene, out: Path | str, *, progress: Progress = silent) -> Outcome:
+    """Evaluate a scene into a folder, see :meth:`Seat.evaluate`."""
+    return open(scene).evaluate(out, progress=progress)
