@@ -84,7 +84,11 @@ def merged(rest, n):
 
 def tip(h, h_far, stiffness):
     """Deflection of the end of a cantilever under unit force."""
-    rest, n, sheet = sewn_sheet(h, h_far, stiffness, clamped=True)
+    return deflection(*sewn_sheet(h, h_far, stiffness, clamped=True))
+
+
+def deflection(rest, n, sheet):
+    """The same of a given sheet, clamped at x = 0."""
     join = merged(rest, n)
     matrix = csc_array(join.T @ sheet.across() @ join)
     end = np.flatnonzero(rest[:, 0] > LENGTH - 1e-9)
@@ -175,6 +179,65 @@ def test_matrix_of_the_minimiser_has_the_folds_and_bending_below_them():
         assert np.abs(full).max() < 1e-9
         # A patch of bending reaches one ring of triangles beyond its own.
         assert (np.abs(rest[touched, 0] - LENGTH / 2) < 0.02 + 3 * 0.02).all()
+
+
+@pytest.mark.parametrize("angle", [0.4, 1.1])
+def test_every_fold_has_a_stiffness_and_a_length_of_its_own(angle):
+    """Of unlike fabrics and edges: energy sum 1/2 k l (2 sin(angle / 2))^2, moments k sin(angle).
+
+    With the halves apart as well: a gap between them bends nothing.
+    """
+    rest, faces, n = strips(0.01, 0.006, "graded")
+    plain = hem(rest, faces, n, 1.0)
+    k = np.geomspace(0.1, 5.0, len(plain.near))
+    folds = Folds(
+        dataclasses.replace(plain, stiffness=k),
+        edges_of(rest, faces),
+        slope_rows(rest, faces, edges_of(rest, faces)),
+    )
+    assert np.ptp(plain.length) > 0.3 * plain.length.mean()
+    x, far = rest[:, 0] - LENGTH / 2, np.arange(len(rest)) >= n
+    turned = np.column_stack([
+        np.where(far, np.cos(angle) * x + 0.003, x), rest[:, 1] - 0.001 * far,
+        np.where(far, np.sin(angle) * x - 0.002, 0.0),
+    ])  # fmt: skip
+    np.testing.assert_allclose(folds.moments(turned), k * np.sin(angle), rtol=1e-9)
+    energy = 0.5 * (k @ plain.length) * (2 * np.sin(angle / 2)) ** 2
+    assert folds.value(turned, np.zeros_like(turned)) == pytest.approx(energy, rel=1e-9)
+
+
+def test_only_the_mean_over_what_is_sewn_to_an_edge_counts():
+    """The far half twisted, so that no two of its edges slope alike: each row by its shares."""
+    rest, faces, n = strips(0.01, 0.006, "graded")
+    plain = hem(rest, faces, n, 1.0)
+    k = np.linspace(1.0, 2.0, len(plain.near))
+    edges = edges_of(rest, faces)
+    folds = Folds(dataclasses.replace(plain, stiffness=k), edges, slope_rows(rest, faces, edges))
+    x, y = rest.T
+    far = np.arange(len(rest)) >= n
+    z = np.where(far, 1e-3 * (x - LENGTH / 2) * (1 + 40 * y), 0.0)
+    flat = np.column_stack([rest, z])
+    middle = rest[plain.far, 1].mean(axis=1)
+    slope = np.bincount(plain.row, plain.weight * 1e-3 * (1 + 40 * middle))
+    np.testing.assert_allclose(folds.moments(flat), k * slope, rtol=2e-3)
+    energy = 0.5 * (k * plain.length) @ slope**2
+    assert folds.value(flat, np.zeros_like(flat)) == pytest.approx(energy, rel=4e-3)
+    assert energy != pytest.approx(0.5 * (k * plain.length).mean() * (slope**2).sum(), rel=0.02)
+    assert np.ptp(slope) > 0.5 * slope.mean()
+
+
+@pytest.mark.parametrize(("root", "end"), [(6e-3, 1.5e-3), (2e-3, 9e-3)])
+def test_cantilever_of_two_fabrics(root, end):
+    """Tip under unit force: each part bends by its own stiffness, the fold turns by M / k."""
+    k, half = 0.6, LENGTH / 2
+    rest, faces, n = strips(0.01, 0.006)
+    fabric_of = [fabrics.isotropic(bend=b, poisson=0.0) for b in (root, end)]
+    owner = (faces[:, 0] >= n).astype(int)
+    sheet = ElasticSheet(
+        rest, faces, owner, fabric_of, hem=hem(rest, faces, n, k), clamped=rest[:, 0] < 1e-9
+    )
+    exact = (LENGTH**3 - half**3) / (3 * root) + half**3 / (3 * end) + half**2 / k
+    assert deflection(rest, n, sheet) == pytest.approx(exact / WIDTH, rel=0.025)
 
 
 def test_inner_edges_are_no_rim():

@@ -5,8 +5,10 @@ import pytest
 
 from seatlook import model
 from seatlook.errors import InputError
+from seatlook.solver.process.process import Process
 from seatlook.solver.process.stages import check_stages, schedule
 from seatlook.solver.process.ties import Ties
+from support import fabrics
 from support.covers import cover, points_along, row, sheet, vertices_as_points
 from support.taylor import slopes
 
@@ -130,6 +132,92 @@ def test_figures_of_a_tie(made):
     assert f["hook/wire/force_sum"] == pytest.approx(
         np.linalg.norm(ties.force(x)[ties.ties[1].rows], axis=1).sum()
     )
+
+
+def unlike():
+    """The two strips with stitches and rings of unequal length, and stiffness of two fabrics.
+
+    On the left every other stitch is at a vertex: its second one has no weight.
+    """
+    c = two_strips()
+    (seam,), (hook,) = c.stitchings, c.anchors
+    at_vertices = np.where(np.arange(4)[:, None] % 2 == 0, [1.0, 0.0], seam.a.weights)
+    seam = dataclasses.replace(
+        seam,
+        a=dataclasses.replace(seam.a, weights=at_vertices),
+        length=np.array([0.01, 0.1, 0.02, 0.04]),
+    )
+    c = dataclasses.replace(
+        c,
+        stitchings=(seam,),
+        anchors=(dataclasses.replace(hook, length=np.linspace(0.01, 0.02, len(hook.length))),),
+    )
+    right = np.arange(len(c.rest)) >= c.faces[c.panel == 1].min()
+    random = np.random.default_rng(3).uniform(1.0, 2.0, len(c.rest))
+    random[seam.a.vertices[at_vertices == 0.0]] = 0.4
+    return c, right, np.where(right, 3e4, 1e4) * random
+
+
+@pytest.mark.parametrize("stiffer", [1.0, 0.05])
+def test_a_tie_is_as_stiff_as_the_softest_fabric_that_it_holds(stiffer):
+    """Row by row, whichever side that is; a vertex without weight does not count."""
+    c, right, stiffness = unlike()
+    stiffness = np.where(right, stiffer * stiffness, stiffness)
+    ties = Ties(c, stiffness)
+    expected = []
+    for part in (*c.stitchings, *c.anchors):
+        sides = (part.a, part.b) if isinstance(part, model.Stitching) else (part.points,)
+        for k, length in enumerate(part.length):
+            held = [
+                stiffness[v]
+                for side in sides
+                for v, w in zip(side.vertices[k], side.weights[k], strict=True)
+                if w > 0
+            ]
+            expected.append(100.0 * length * min(held))
+    np.testing.assert_allclose(ties.full, expected, rtol=1e-12)
+    assert (np.diff(ties.full) != 0).all()
+
+
+def test_the_process_gives_every_vertex_the_tension_of_its_own_fabric():
+    """Geometric mean of warp and weft over the element size."""
+    c, right, _ = unlike()
+    c = dataclasses.replace(
+        c,
+        materials=tuple(
+            dataclasses.replace(c.materials[0], fabric=fabric)
+            for fabric in (fabrics.isotropic(1000.0), fabrics.woven())
+        ),
+    )
+    values = 1000.0, np.sqrt(900.0 * 700.0)
+    got = Process(c).ties
+    expected = Ties(c, np.where(right, values[1], values[0]) / c.element_size)
+    np.testing.assert_allclose(got.full, expected.full, rtol=1e-12)
+    # Rings hold the stiff panel alone, stitches the soft one as well.
+    rows = np.array([len(c.stitchings[0].length), len(c.anchors[0].length)])
+    length = np.split(np.concatenate([c.stitchings[0].length, c.anchors[0].length]), rows[:1])
+    stitch, ring = (f / n for f, n in zip(np.split(got.full, rows[:1]), length, strict=True))
+    np.testing.assert_allclose(stitch / ring[0], values[1] / values[0], rtol=1e-12)
+
+
+def test_figures_of_an_uneven_seam():
+    """Gaps and forces row by row: largest, mean and sum are different numbers, and of this tie."""
+    c, right, stiffness = unlike()
+    ties, x = Ties(c, stiffness), np.array(c.positions)
+    x[right] += np.outer(1.5 * c.rest[right, 0], [0.03, 0.02, -0.1])
+    ties.close()
+    (seam,), (hook,) = c.stitchings, c.anchors
+    size = np.linalg.norm(seam.a.at(x) - seam.b.at(x), axis=1)
+    f = ties.figures(x)
+    assert f["seam_gap_max"] == f["seam/seam/gap_max"] == pytest.approx(size.max())
+    assert f["seam_gap_mean"] == f["seam/seam/gap_mean"] == pytest.approx(size.mean())
+    force = ties.full[:4] * size
+    assert f["seam/seam/force_max"] == pytest.approx(force.max())
+    assert f["seam/seam/force_sum"] == pytest.approx(force.sum())
+    assert size.max() > 1.1 * size.mean()
+    assert force.argmax() != size.argmax()
+    rings = ties.full[4:] * np.linalg.norm(hook.points.at(x) - hook.target, axis=1)
+    np.testing.assert_allclose(np.linalg.norm(ties.forces(x)["wire"], axis=1), rings, rtol=1e-12)
 
 
 def test_schedule_covers_the_stages_in_order():
