@@ -8,6 +8,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ ROOT = Path(__file__).parents[1]
 PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "tests").rglob("*.md")]
 CHANGES = ROOT / "CHANGELOG.md"  # speaks of names as they were
 MODULES = [str(file) for top in ("src", "tests", "gallery") for file in (ROOT / top).rglob("*.py")]
+ENDINGS = {"toml", "npz"}  # of seat.toml, seat.npz
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.M | re.S)
@@ -122,6 +124,12 @@ def test_python_names_it_gives_exist(page):
 
 
 @every_page
+def test_what_it_calls_on_a_seat_exists(page):
+    calls = re.findall(r"(?<![\w/-])seat\.([a-z_]+)(?=\(|\.[a-z]|`)", text_of(page))
+    assert {*calls} <= {"scene", *ENDINGS, *dir(seatlook.Seat)}
+
+
+@every_page
 def test_commands_it_shows_are_accepted(page):
     for command in commands_of(page):
         words = shlex.split(command.partition(" > ")[0], comments=True)[1:]
@@ -196,7 +204,11 @@ def test_the_index_has_a_line_for_every_room():
         if not path.name.startswith("_")
         and (path.suffix == ".py" or (path / "__init__.py").exists())
     }
-    assert set(re.findall(r"^\| `(\w+)` \|", text, re.M)) == rooms
+    listed = re.findall(r"^\| `(\w+)` \|", text, re.M)
+    assert {*listed} == rooms
+    contracts = tomllib.loads(text_of(ROOT / "pyproject.toml"))["tool"]["importlinter"]["contracts"]
+    (order,) = (c["layers"] for c in contracts if c.get("containers") == ["seatlook"])
+    assert listed == [room for room in re.findall(r"\w+", " ".join(order)) if room[0] != "_"]
 
 
 def test_the_index_answers_with_the_file_in_which_a_name_is_defined():
