@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[1]
 PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "tests").rglob("*.md")]
 CHANGES = ROOT / "CHANGELOG.md"  # speaks of names as they were
 MODULES = [str(file) for top in ("src", "tests", "gallery") for file in (ROOT / top).rglob("*.py")]
-ENDINGS = {"toml", "npz"}  # of seat.toml, seat.npz
+ENDINGS = {"toml", "npz", "k"}  # of seat.toml, seat.npz, seat.k
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.M | re.S)
