@@ -50,14 +50,14 @@ def read_exr(path: Path) -> npt.NDArray[np.float32]:
         raise InputError.single(
             "picture", got=str(error), expected="a whole OpenEXR picture", file=path
         ) from error
-    found = next((channels[n] for n in ("RGB", "RGBA", "Y") if n in channels), None)
-    if found is None and len(channels) == 1:
-        (found,) = channels.values()
-    if found is None:
+    pixels_of = next((channels[n] for n in ("RGB", "RGBA", "Y") if n in channels), None)
+    if pixels_of is None and len(channels) == 1:
+        (pixels_of,) = channels.values()
+    if pixels_of is None:
         raise InputError.single(
             "channels", got=", ".join(channels), expected="R, G and B, or one", file=path
         )
-    pixels = np.asarray(found[..., :3] if found.ndim == 3 else found, dtype=np.float32)
+    pixels = np.asarray(pixels_of[..., :3] if pixels_of.ndim == 3 else pixels_of, dtype=np.float32)
     if not np.isfinite(pixels).all():
         raise InputError.single("picture", got="nan or inf", expected="finite values", file=path)
     return pixels

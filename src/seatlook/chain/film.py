@@ -49,14 +49,14 @@ def shots(solution: Solution, folder: Path) -> tuple[Shot, ...]:
     InputError
         No stage left shapes there, or they are of another mesh.
     """
-    found = list(_read(solution, folder))
-    if not found:
+    stages = list(_read(solution, folder))
+    if not stages:
         raise InputError.single(
             "stages", got="no shapes", expected="the folder of a run that was solved in stages",
             file=folder,
         )  # fmt: skip
     start = Shot("placed", 0.0, solution.cover.positions)
-    return (start, *found, Shot(AT_REST, found[-1].time, solution.positions))
+    return (start, *stages, Shot(AT_REST, stages[-1].time, solution.positions))
 
 
 def ends(taken: tuple[Shot, ...]) -> tuple[Shot, ...]:

@@ -116,13 +116,13 @@ def _refuse_users_files(out: Path, writes: Iterable[str]) -> None:
 
 def _files(out: Path) -> dict[str, tuple[int, int]]:
     """Path -> time and size of every file below the folder that is not hidden."""
-    found = {}
+    files = {}
     for path in out.rglob("*"):
         name = path.relative_to(out)
         if path.is_file() and not any(part.startswith(".") for part in name.parts):
             status = path.stat()
-            found[name.as_posix()] = (status.st_mtime_ns, status.st_size)
-    return found
+            files[name.as_posix()] = (status.st_mtime_ns, status.st_size)
+    return files
 
 
 def _note(out: Path, before: dict[str, tuple[int, int]]) -> None:

@@ -161,19 +161,19 @@ def _before(stage: str, cover: Cover, folder: Path) -> Solution | None:
         return None
     # Of what begins together only the last has steps of its own and so a snapshot.
     paths = {name: folder / snapshot_name(order, name) for name in before}
-    kept = [name for name in before if paths[name].exists()]
-    if not kept:
+    stored = [name for name in before if paths[name].exists()]
+    if not stored:
         raise InputError.single(
             "snapshot", got="no such file", expected=f"the end of stage {before[-1]!r}",
             file=paths[before[-1]], hint="it is written by solving in stages",
         )  # fmt: skip
-    state: Solution = io.read_result(paths[kept[-1]])
-    changed = list(_changes(state.cover, cover, before[: before.index(kept[-1]) + 1]))
+    state: Solution = io.read_result(paths[stored[-1]])
+    changed = list(_changes(state.cover, cover, before[: before.index(stored[-1]) + 1]))
     if changed:
         raise InputError.single(
             "snapshot", got=f"another {', '.join(changed)}",
-            expected=f"one of the same cover up to the end of {kept[-1]!r}",
-            file=paths[kept[-1]], hint="do an earlier stage again",
+            expected=f"one of the same cover up to the end of {stored[-1]!r}",
+            file=paths[stored[-1]], hint="do an earlier stage again",
         )  # fmt: skip
     return state
 

@@ -80,12 +80,12 @@ def compare(
 
 def _results(words: tuple[str, ...], names: tuple[str, ...]) -> MappingProxyType[str, Path]:
     """Read NAME=RESULT.npz."""
-    found = {}
+    paths = {}
     for word in words:
         name, equals, path = word.rpartition("=")
         if not equals or name not in names:
             raise InputError.single(
                 "--result", got=repr(word), expected=f"NAME=RESULT.npz, NAME of {', '.join(names)}"
             )
-        found[name] = Path(path)
-    return MappingProxyType(found)
+        paths[name] = Path(path)
+    return MappingProxyType(paths)

@@ -99,8 +99,8 @@ def _threads(advice: list[str]) -> list[tuple[str, int]]:
     import numba
 
     names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-    said = [os.environ[name] for name in names if os.environ.get(name, "").isdigit()]
-    algebra = int(said[0]) if said else os.cpu_count() or 1
+    counts = [os.environ[name] for name in names if os.environ.get(name, "").isdigit()]
+    algebra = int(counts[0]) if counts else os.cpu_count() or 1
     if algebra > (os.cpu_count() or 1):
         advice.append(
             f"more threads ({algebra}) than cores: set OMP_NUM_THREADS={os.cpu_count()} or less"
@@ -114,8 +114,8 @@ def _cache(advice: list[str]) -> list[tuple[str, object]]:
 
     named = os.environ.get("NUMBA_CACHE_DIR")
     folder = Path(named) if named else Path(seatlook.__file__).parent
-    kept = _writable(folder)
-    if not kept:
+    writable = _writable(folder)
+    if not writable:
         advice.append(
             f"{folder} cannot be written, so kernels are compiled again in every run (about a "
             "minute): set NUMBA_CACHE_DIR to a folder of your own"
@@ -123,8 +123,8 @@ def _cache(advice: list[str]) -> list[tuple[str, object]]:
     files = list(folder.rglob("*.nbi")) if folder.exists() else []
     return [
         ("kernel cache", str(folder)),
-        ("kernel cache kept", kept),
-        ("kernels kept", len(files)),
+        ("kernel cache writable", writable),
+        ("kernels writable", len(files)),
     ]
 
 
@@ -133,8 +133,8 @@ def _fields(advice: list[str]) -> list[tuple[str, object]]:
     from seatlook.solver.foam.field_cache import folder
 
     base = folder()
-    kept = base is not None and _writable(base)
-    if not kept:
+    writable = base is not None and _writable(base)
+    if not writable:
         advice.append(
             f"{base or 'the home folder'} cannot be written, so the distance field of a foam is "
             "made again in every run (a second or two): set SEATLOOK_CACHE_DIR to a folder of "
@@ -144,8 +144,8 @@ def _fields(advice: list[str]) -> list[tuple[str, object]]:
     size = sum(path.stat().st_size for path in files)
     return [
         ("field cache", str(base)),
-        ("field cache kept", kept),
-        ("fields kept", f"{len(files)}, {size / 1e6:.0f} MB"),
+        ("field cache writable", writable),
+        ("fields writable", f"{len(files)}, {size / 1e6:.0f} MB"),
     ]
 
 

@@ -94,9 +94,9 @@ def _summarise(cells: Sequence[Cell], out: Path, *, json: bool) -> None:
     from seatlook.io import write_table
     from seatlook.sweeps import summary
 
-    found = summary.rows(cells, out / "cells")
-    heads = list(dict.fromkeys(key for row in found for key in row))
-    columns = [[row.get(head) for head in heads] for row in found]
+    rows = summary.rows(cells, out / "cells")
+    heads = list(dict.fromkeys(key for row in rows for key in row))
+    columns = [[row.get(head) for head in heads] for row in rows]
     write_table(out / "sweep.csv", heads, columns)
     chances = [
         {"of": words, **row}
@@ -104,7 +104,7 @@ def _summarise(cells: Sequence[Cell], out: Path, *, json: bool) -> None:
         for row in _irregular(words, group, out, f"-{number}" if number else "")
     ]
     if json:
-        show_json({"cells": found, "probability": chances})
+        show_json({"cells": rows, "probability": chances})
         return
     table(heads, columns, json=False)
     if chances:
@@ -121,22 +121,23 @@ def _irregular(
     from seatlook.sweeps.probability import chance, draw_chance
 
     try:
-        found = chance(cells, out / "cells")
+        chances = chance(cells, out / "cells")
     except InputError as error:
         say(f"{words}: {error}")
         return []
-    zones = draw_chance(cells, found, out / f"probability{ending}.png")
+    zones = draw_chance(cells, chances, out / f"probability{ending}.png")
     write_table(
         out / f"probability{ending}.csv", list(zones[0]), [list(row.values()) for row in zones]
     )
-    if found.left_out:
+    if chances.left_out:
         say(
-            f"{words}: {found.left_out} of {found.covers} covers are left out of the probability, "
-            "because they did not converge; they are often the most wrinkled. What they could "
+            f"{words}: {chances.left_out} of {chances.covers} covers are left out of the "
+            "probability, because they did not converge; they are often the most wrinkled. What "
+            "they could "
             f"change stands beside it in probability{ending}.csv"
         )
-    if found.converged < summary.FEWEST:
-        say(f"{words}: {found.converged} covers are too few to tell which input matters")
+    if chances.converged < summary.FEWEST:
+        say(f"{words}: {chances.converged} covers are too few to tell which input matters")
         return zones
     causes = summary.causes(cells, out / "cells")
     write_table(
@@ -145,9 +146,10 @@ def _irregular(
         [[c.input, c.correlation, c.of_size, c.noise] for c in causes],
     )
     strongest = causes[0]
-    says = "matters most" if strongest.matters else "is strongest, but not above the noise"
+    rank = "matters most" if strongest.matters else "is strongest, but not above the noise"
     note(
-        f"{words}: {found.converged} of {found.covers} covers converged; {strongest.input} {says} "
+        f"{words}: {chances.converged} of {chances.covers} covers converged; "
+        f"{strongest.input} {rank} "
         f"(rank correlation {strongest.strength:.2f} in size, noise {strongest.noise:.2f})"
     )
     return zones

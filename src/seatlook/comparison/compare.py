@@ -141,9 +141,9 @@ class Comparison:
         zones = [z for z in values[names[0]] if z != FREE_EDGE]
         rows: list[tuple[str, list[float | None], list[float | None]]] = []
         for zone in zones:
-            found = [values[name].get(zone) for name in names]
-            away = [None if v is None else v - values[names[0]][zone] for v in found[1:]]
-            rows.append((zone, found, away))
+            means = [values[name].get(zone) for name in names]
+            away = [None if v is None else v - values[names[0]][zone] for v in means[1:]]
+            rows.append((zone, means, away))
         rows.sort(key=lambda row: -max((abs(v) for v in row[2] if v is not None), default=0.0))
         return Table(
             heads=(
@@ -151,7 +151,7 @@ class Comparison:
                 *(f"{measure}: {name}" for name in names),
                 *(f"{name} - {names[0]}" for name in names[1:]),
             ),
-            rows=tuple((zone, *found, *away) for zone, found, away in rows),
+            rows=tuple((zone, *means, *away) for zone, means, away in rows),
         )
 
     def show(self, a: tuple[str, str, str], b: tuple[str, str, str]) -> Contrast:

@@ -45,13 +45,13 @@ class VariantScores:
         first, *others = self.variants
         rows: list[tuple[tuple[str, str], list[float | None], list[float | None]]] = []
         for cell in dict.fromkeys(cell[1:] for cell in self.vwi):
-            found = [self.vwi.get((name, *cell)) for name in self.variants]
-            base = found[0]
-            away = [None if base is None or v is None else v - base for v in found[1:]]
-            rows.append((cell, found, away))
+            scores = [self.vwi.get((name, *cell)) for name in self.variants]
+            base = scores[0]
+            away = [None if base is None or v is None else v - base for v in scores[1:]]
+            rows.append((cell, scores, away))
         rows.sort(key=lambda row: -max((abs(v) for v in row[2] if v is not None), default=0.0))
         heads = ("texture", "rig", *self.variants, *(f"{name} - {first}" for name in others))
-        return Table(heads=heads, rows=tuple((*c, *found, *away) for c, found, away in rows))
+        return Table(heads=heads, rows=tuple((*c, *scores, *away) for c, scores, away in rows))
 
     def _repr_html_(self) -> str:
         return self.table()._repr_html_()

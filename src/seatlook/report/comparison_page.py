@@ -121,18 +121,18 @@ def _pictures(
 def _summary(comparison: Comparison, scores: VariantScores | None) -> Iterator[str]:
     """How much each variant wrinkles, and where the others differ most from the first."""
     shares = {n: case.assessment.share_above_one for n, case in comparison.variants.items()}
-    said = "; ".join(f"{name}: {number(100 * share)} %" for name, share in shares.items())
-    yield f"Share of the cover with W2 above 1: {said}."
+    text = "; ".join(f"{name}: {number(100 * share)} %" for name, share in shares.items())
+    yield f"Share of the cover with W2 above 1: {text}."
     first, *others = comparison.variants
     zone, *row = comparison.table("w2_mean").rows[0]
-    found = dict(zip(comparison.variants, row, strict=False))
-    away = dict(zip(others, row[len(found) :], strict=True))
+    means = dict(zip(comparison.variants, row, strict=False))
+    away = dict(zip(others, row[len(means) :], strict=True))
     known = {name: float(v) for name, v in away.items() if v is not None}
     if known:
         most = max(known, key=lambda name: abs(known[name]))
         yield (
-            f"They differ most in {zone}: mean of W2 {number(found[most])} in {most}, "
-            f"{number(found[first])} in {first}."
+            f"They differ most in {zone}: mean of W2 {number(means[most])} in {most}, "
+            f"{number(means[first])} in {first}."
         )
     if scores and scores.widest:
         name, texture, rig = scores.widest
@@ -245,19 +245,19 @@ def _against(comparison: Comparison, table: Table) -> Table:
 
 def _different_parameters(comparison: Comparison) -> Table:
     """Keys with another value in one of the scenes; a pattern differs by its seams' ease."""
-    found: dict[str, dict[str, str]] = {}
+    values_of: dict[str, dict[str, str]] = {}
     for name, variant in comparison.variants.items():
         for owner, table in parameter_tables(variant.scene).items():
             for key, value, *_ in table.rows:
-                found.setdefault(f"{owner}: {key}", {})[name] = str(value)
+                values_of.setdefault(f"{owner}: {key}", {})[name] = str(value)
         for seam in variant.scene.pattern.seams:
             lengths = [variant.scene.pattern.edge_length(e) for e in (seam.a, *seam.b)]
             text = " + ".join(f"{1e3 * length:.1f}" for length in lengths)
-            found.setdefault(f"seam {seam.name}: lengths_mm", {})[name] = text
+            values_of.setdefault(f"seam {seam.name}: lengths_mm", {})[name] = text
     names = tuple(comparison.variants)
     rows = tuple(
         (key, *(values.get(name) for name in names))
-        for key, values in found.items()
+        for key, values in values_of.items()
         if len({values.get(name) for name in names}) > 1
     )
     return Table(heads=("key", *names), rows=rows or (("none", *(None for _ in names)),))

@@ -175,12 +175,12 @@ def _conditions(solution: Solution) -> Iterator[Check]:
 
 
 def _limits(evaluation: Evaluation) -> Iterator[Check]:
-    for found in evaluation.verdicts:
+    for verdict in evaluation.verdicts:
         yield Check(
-            name=f"{found.limit.zone}: {found.limit.measure}",
-            value=number(found.value),
-            limit=number(found.limit.maximum),
-            kept=found.kept,
+            name=f"{verdict.limit.zone}: {verdict.limit.measure}",
+            value=number(verdict.value),
+            limit=number(verdict.limit.maximum),
+            kept=verdict.kept,
         )
 
 

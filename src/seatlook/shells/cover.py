@@ -61,8 +61,8 @@ def shell_cover(
     faces, element = _oriented(shells, wrinkles)
     area = face_vectors(reference, faces)
     flat = np.array([
-        shells.reference is not None and _is_flat(reference, faces[mine], area[mine])
-        for mine in (part[element] == k for k in range(len(parts)))
+        shells.reference is not None and _is_flat(reference, faces[rows], area[rows])
+        for rows in (part[element] == k for k in range(len(parts)))
     ])  # fmt: skip
     panel, owner, look = _panels(area, part[element], flat)
     corners, node, of_panel = _own_vertices(faces, panel, shells.node_count)
@@ -192,11 +192,11 @@ def _own_vertices(
     corners = np.empty_like(faces)
     nodes, count = [], 0
     for k in range(int(panel.max()) + 1):
-        mine = panel == k
+        rows = panel == k
         used = np.zeros(node_count, dtype=bool)
-        used[faces[mine]] = True
+        used[faces[rows]] = True
         # A sort of all corners would cost more than the counting of each panel's nodes.
-        corners[mine] = (count - 1 + np.cumsum(used))[faces[mine]]
+        corners[rows] = (count - 1 + np.cumsum(used))[faces[rows]]
         nodes.append(np.flatnonzero(used))
         count += len(nodes[-1])
     owner = np.repeat(np.arange(len(nodes)), [len(own) for own in nodes])
@@ -211,13 +211,13 @@ def _laid_out(
     warp = np.zeros((len(look), 3))
     left = 0.0
     for k, normal in enumerate(look):
-        mine = owner == k
-        p = points[mine] - points[mine].mean(axis=0)
+        rows = owner == k
+        p = points[rows] - points[rows].mean(axis=0)
         axes = _warp_and_weft(p, normal)
         warp[k] = axes[0]
         flat = p @ axes.T
-        rest[mine] = flat - [flat[:, 0].min() - left, flat[:, 1].min()]
-        left = float(rest[mine][:, 0].max()) + _GAP
+        rest[rows] = flat - [flat[:, 0].min() - left, flat[:, 1].min()]
+        left = float(rest[rows][:, 0].max()) + _GAP
     return rest, warp
 
 

@@ -119,16 +119,16 @@ def shell_strains(
 
 
 def _measured(
-    mid: FloatArray, half: FloatArray, given: StrainMeasure, wanted: StrainMeasure
+    mid: FloatArray, half: FloatArray, given: StrainMeasure, measure: StrainMeasure
 ) -> tuple[FloatArray, FloatArray]:
     """Turn both surfaces and the middle from one measure into the other."""
-    if wanted not in STRAIN_MEASURES:
+    if measure not in STRAIN_MEASURES:
         raise InputError.single(
-            "strain_measure", got=repr(wanted), expected=f"one of {', '.join(STRAIN_MEASURES)}"
+            "strain_measure", got=repr(measure), expected=f"one of {', '.join(STRAIN_MEASURES)}"
         )
-    if given == wanted:
+    if given == measure:
         return mid, half
-    turn = green_of_logarithmic if wanted == "green" else logarithmic_strain
+    turn = green_of_logarithmic if measure == "green" else logarithmic_strain
     return turn(mid), 0.5 * (turn(mid + half) - turn(mid - half))
 
 

@@ -156,12 +156,12 @@ def carried(values: FloatArray, cover: Cover, onto: Cover) -> FloatArray:
 
     The nearest face of the same panel in pattern coordinates.
     """
-    found = np.empty(len(onto.faces))
+    out = np.empty(len(onto.faces))
     for number in range(len(onto.panel_names)):
         here, there = cover.panel == number, onto.panel == number
         tree = cKDTree(cover.uv[cover.faces[here]].mean(axis=1))
-        found[there] = values[here][tree.query(onto.uv[onto.faces[there]].mean(axis=1))[1]]
-    return found
+        out[there] = values[here][tree.query(onto.uv[onto.faces[there]].mean(axis=1))[1]]
+    return out
 
 
 def _write_array(path: Path, values: FloatArray) -> None:

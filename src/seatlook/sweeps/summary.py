@@ -49,7 +49,7 @@ class Cause:
 
 def rows(cells: Sequence[Cell], folder: Path) -> list[dict[str, Any]]:
     """One row per finished cell: its settings, its status, and each measure over the cover."""
-    found = []
+    table = []
     for cell in cells:
         if not finished(cell, folder):
             continue
@@ -60,8 +60,8 @@ def rows(cells: Sequence[Cell], folder: Path) -> list[dict[str, Any]]:
             row[key] = value
         for tolerance, value in zip(result["inputs"], result["values"] or (), strict=False):
             row[tolerance["name"]] = value
-        found.append(row | overall(result["zones"]))
-    return found
+        table.append(row | overall(result["zones"]))
+    return table
 
 
 def overall(zones: Sequence[dict[str, Any]]) -> dict[str, float]:
@@ -90,10 +90,10 @@ def causes(cells: Sequence[Cell], folder: Path) -> tuple[Cause, ...]:
         )
     drawn = np.array([[row[name] for name in names] for row in good])
     output = np.array([row[OUTPUT] for row in good])
-    found, noise = rank_correlation(drawn, output)
+    correlations, noise = rank_correlation(drawn, output)
     sizes, _ = rank_correlation(np.abs(drawn), output)
     listed = [
         Cause(input=name, correlation=float(value), of_size=float(size), noise=noise)
-        for name, value, size in zip(names, found, sizes, strict=True)
+        for name, value, size in zip(names, correlations, sizes, strict=True)
     ]
     return tuple(sorted(listed, key=lambda c: -c.strength))

@@ -84,14 +84,14 @@ def _drift(solution: Solution, warp: FloatArray, normal: FloatArray) -> FloatArr
     return np.where(np.linalg.norm(flat, axis=1) > _STANDING, angle, np.nan)
 
 
-def distortion_table(solution: Solution, found: Distortion) -> tuple[DistortionRow, ...]:
+def distortion_table(solution: Solution, fields: Distortion) -> tuple[DistortionRow, ...]:
     """Summarise each measure zone by zone; faces without a grain direction are left out."""
     cover = solution.cover
     area = cover.rest_area
     rows = []
     for i, zone in enumerate(cover.zone_names):
         for name, field in DISTORTIONS.items():
-            values = field(found)
+            values = field(fields)
             inside = (cover.zone == i) & np.isfinite(values)
             if not inside.any():
                 continue

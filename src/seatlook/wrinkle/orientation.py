@@ -54,11 +54,11 @@ def agree(corners: IntArray, area: FloatArray) -> Orientation:
     upright, flipped = sheet[:e], sheet[e:]
     one_sided = upright == flipped
     # The sheet that turns less area over wins; of equals the one that keeps the first element.
-    kept = np.bincount(upright, area, count)
+    upright_area = np.bincount(upright, area, count)
     first = np.full(count, e)
     np.minimum.at(first, upright, np.arange(e))
-    stays = kept[upright] - kept[flipped]
-    scale = 1e-9 * (kept[upright] + kept[flipped])
+    stays = upright_area[upright] - upright_area[flipped]
+    scale = 1e-9 * (upright_area[upright] + upright_area[flipped])
     tie = np.abs(stays) <= scale
     good = np.where(tie, first[upright] < first[flipped], stays > 0) | one_sided
     piece = np.unique(np.minimum(upright, flipped), return_inverse=True)[1]

@@ -45,8 +45,8 @@ class Statistic:
         return self.of(values, weight)
 
 
-def _share(wanted: Callable[[FloatArray], np.ndarray]) -> Callable[[FloatArray, FloatArray], float]:
-    return lambda values, weight: mean(wanted(values).astype(float), weight)
+def _share(test: Callable[[FloatArray], np.ndarray]) -> Callable[[FloatArray, FloatArray], float]:
+    return lambda values, weight: mean(test(values).astype(float), weight)
 
 
 STATISTICS: Mapping[str, Statistic] = {

@@ -98,16 +98,16 @@ def _located(cover: Cover, panel: int, line: FloatArray) -> tuple[IntArray, Floa
     # One bit per side of the line's box: a face whose corners share one lies beyond that side.
     beyond = np.concatenate([cover.rest < low, cover.rest > high], axis=1)
     side = np.packbits(beyond, axis=1)[:, 0][cover.faces]
-    mine = np.flatnonzero((side[:, 0] & side[:, 1] & side[:, 2] == 0) & (cover.panel == panel))
-    p = cover.rest[cover.faces[mine]]
-    if not len(mine):
+    rows = np.flatnonzero((side[:, 0] & side[:, 1] & side[:, 2] == 0) & (cover.panel == panel))
+    p = cover.rest[cover.faces[rows]]
+    if not len(rows):
         return np.full(len(line), -1), np.zeros((len(line), 3))
     inverse = np.linalg.inv(np.stack([p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]], axis=2))
     w = np.einsum("fij,kfj->kfi", inverse, line[:, None] - p[None, :, 0])
     weight = np.concatenate([1.0 - w.sum(axis=2, keepdims=True), w], axis=2)
     best = weight.min(axis=2).argmax(axis=1)
     chosen = weight[np.arange(len(line)), best]
-    return np.where(chosen.min(axis=1) >= -1e-9, mine[best], -1), chosen
+    return np.where(chosen.min(axis=1) >= -1e-9, rows[best], -1), chosen
 
 
 def _normal(cover: Cover, positions: FloatArray, face: IntArray) -> FloatArray:

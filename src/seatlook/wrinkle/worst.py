@@ -71,8 +71,8 @@ def worst_wrinkles(
     cover = solution.cover
     region = _regions(cover.faces, indices.w2 > level)
     weight = indices.w2 * cover.rest_area
-    kept = region >= 0
-    total = np.bincount(region[kept], weight[kept])
+    numbered = region >= 0
+    total = np.bincount(region[numbered], weight[numbered])
     ranked = np.argsort(-total, kind="stable")[:count]
     return tuple(_describe(solution, indices, np.flatnonzero(region == r)) for r in ranked)
 
@@ -101,11 +101,11 @@ def beside_sections(
     panel[cover.faces] = cover.panel[:, None]
     near = np.zeros(len(cover.rest), dtype=bool)
     for wrinkle in wrinkles:
-        mine = np.flatnonzero(panel == cover.panel_names.index(wrinkle.panel))
-        off = cover.rest[mine] - wrinkle.rest
+        rows = np.flatnonzero(panel == cover.panel_names.index(wrinkle.panel))
+        off = cover.rest[rows] - wrinkle.rest
         half = _half_section(cover, wrinkle)
         along = np.maximum(np.abs(off @ _across(wrinkle)) - half, 0.0)
-        near[mine[np.hypot(along, off @ wrinkle.along) < reach]] = True
+        near[rows[np.hypot(along, off @ wrinkle.along) < reach]] = True
     return near
 
 
@@ -119,13 +119,13 @@ def _half_section(cover: Cover, wrinkle: Wrinkle) -> float:
 
 def _regions(faces: IntArray, marked: np.ndarray) -> IntArray:
     """Number (m,) of the region of each marked face, joined over edges; -1 elsewhere."""
-    mine = faces[marked]
-    half = np.sort(mine[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    corners = faces[marked]
+    half = np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     key = half @ np.array([int(faces.max()) + 1, 1])
     order = np.argsort(key, kind="stable")
     same = np.flatnonzero(key[order][1:] == key[order][:-1])
     a, b = order[same] // 3, order[same + 1] // 3
-    graph = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(len(mine), len(mine)))
+    graph = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(len(corners), len(corners)))
     region = np.full(len(faces), -1, dtype=np.int64)
     region[marked] = connected_components(graph, directed=False)[1]
     return region
@@ -138,7 +138,7 @@ def _describe(solution: Solution, indices: WrinkleMap, faces: IntArray) -> Wrink
     w2_area = float(w2 @ area)
     share = float(indices.w_stretch[faces] @ area) / w2_area
     cause: Cause = "stretch" if share > 0.5 else "compression"
-    found = []
+    stations = []
     for face in _stations(cover, faces, w2, along):
         corners = cover.faces[face]
         position = solution.positions[corners].mean(axis=0)
@@ -152,8 +152,8 @@ def _describe(solution: Solution, indices: WrinkleMap, faces: IntArray) -> Wrink
             near_kind=kind, near=name, distance=distance, ease=ease,
             advice=_advice(cause, kind, name, ease),
         )  # fmt: skip
-        found.append(replace(wrinkle, depth=section_across(solution, wrinkle).depth))
-    return max(found, key=lambda w: w.depth)
+        stations.append(replace(wrinkle, depth=section_across(solution, wrinkle).depth))
+    return max(stations, key=lambda w: w.depth)
 
 
 def _stations(cover: Cover, faces: IntArray, w2: FloatArray, along: FloatArray) -> list[int]:
@@ -191,15 +191,15 @@ def _nearest(cover: Cover, x: FloatArray, position: FloatArray) -> tuple[str, st
         ("seam", s.name, side) for s in cover.stitchings for side in (s.a, s.b)
     ]
     lines += [(a.kind, a.name, a.points) for a in cover.anchors]
-    found = [
+    distances = [
         (float(np.linalg.norm(points.at(x) - position, axis=1).min()), kind, name)
         for kind, name, points in lines
         if len(points)
     ]
-    if not found:
+    if not distances:
         return "", "", np.inf
-    nearest = min(found)
-    beside = [f for f in found if f[1] == "seam" and f[0] <= nearest[0] + cover.element_size]
+    nearest = min(distances)
+    beside = [f for f in distances if f[1] == "seam" and f[0] <= nearest[0] + cover.element_size]
     distance, kind, name = min(beside, default=nearest)
     return kind, name, distance
 

@@ -37,10 +37,10 @@ def write_glb(solution: Solution, fields: Sequence[Field], path: Path) -> None:
     surfaces = {name: _textured(name, look.maps) for name, look in looks.items()}
     scene = trimesh.Scene()
     for number, (name, material) in enumerate(zip(cover.panel_names, cover.materials, strict=True)):
-        mine = np.flatnonzero(cover.panel == number)
-        used, faces = np.unique(cover.faces[mine], return_inverse=True)
+        rows = np.flatnonzero(cover.panel == number)
+        used, faces = np.unique(cover.faces[rows], return_inverse=True)
         faces = faces.reshape(-1, 3)
-        area = cover.rest_area[mine]
+        area = cover.rest_area[rows]
         mesh = trimesh.Trimesh(
             # z up to y up
             vertices=solution.positions[used][:, [0, 2, 1]] * [1.0, 1.0, -1.0],
@@ -49,7 +49,7 @@ def write_glb(solution: Solution, fields: Sequence[Field], path: Path) -> None:
             visual=_surface(uv=cover.rest[used], material=surfaces[material.name]),
         )
         for field in fields:
-            mean = vertex_means(field.values[mine], faces, area, len(used))
+            mean = vertex_means(field.values[rows], faces, area, len(used))
             mesh.vertex_attributes[field.name] = mean.astype(np.float32)
         scene.add_geometry(mesh, geom_name=name, node_name=name)
 

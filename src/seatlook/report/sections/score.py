@@ -34,13 +34,13 @@ def visibility(evaluation: Evaluation, progress: Progress | None = None) -> Scor
     """
     scene = evaluation.case.scene
     try:
-        found = evaluation.case.score(progress=progress or silent)
+        scored = evaluation.case.score(progress=progress or silent)
     except InputError as error:
         limits = [limit for limit in scene.limits if limit.measure in SCORE_MEASURES]
         return ScoreSection(
             refused=str(error), checks=tuple(_check(limit, "no score", False) for limit in limits)
         )
-    return score_section(found, evaluation.folder)
+    return score_section(scored, evaluation.folder)
 
 
 def score_section(score: SceneScore, folder: Path) -> ScoreSection:
@@ -126,16 +126,16 @@ def zone_table(score: SceneScore) -> Table:
         ladder = score.ladder.zones[zone]
         return vwi, f"{number(vwi)}, {height_text(ladder.equivalent(vwi), ladder.top)} ({rig})"
 
-    found = [
+    ranked = [
         (zone, {texture: worst(zone, texture) for texture in grid.textures})
         for zone in score.ladder.zones
     ]
-    found.sort(key=lambda row: -max(vwi for vwi, _ in row[1].values()))
+    ranked.sort(key=lambda row: -max(vwi for vwi, _ in row[1].values()))
     return Table(
         heads=("zone", "peak to valley [mm]", *grid.textures),
         rows=tuple(
             (zone, 1e3 * score.ladder.zones[zone].height, *(text for _, text in cells.values()))
-            for zone, cells in found
+            for zone, cells in ranked
         ),
     )
 
@@ -166,10 +166,10 @@ def draw_maps(
     view, maps = score.view, []
     names = file_names(f"{texture}\n{rig}" for texture, rig in score.grid.sights)
     for texture, rig in cells:
-        found = score.grid.sights[texture, rig].score
+        visible = score.grid.sights[texture, rig].score
         picture = render_pixel_map(
             view.solution,
-            np.where(view.region.mask, found.map, np.nan),
+            np.where(view.region.mask, visible.map, np.nan),
             camera=view.camera,
             title=f"Visibility D of wrinkles: {texture}, {rig}",
             value_range=(0.0, top),
@@ -221,7 +221,7 @@ def score_values(
             for v in score.verdicts
         ],
         "worst_light": {
-            texture: {kind: _light_values(found) for kind, found in kinds.items()}
+            texture: {kind: _light_values(light) for kind, light in kinds.items()}
             for texture, kinds in (searches or {}).items()
         },
     }
@@ -248,12 +248,12 @@ def _cell_values(score: SceneScore, texture: str, rig: str) -> dict[str, Any]:
     }
 
 
-def _light_values(found: WorstLight) -> dict[str, float]:
+def _light_values(light: WorstLight) -> dict[str, float]:
     return {
-        "azimuth_deg": found.azimuth_deg,
-        "elevation_deg": found.elevation_deg,
-        "vwi": found.vwi,
-        "lights_tried": len(found.tried),
+        "azimuth_deg": light.azimuth_deg,
+        "elevation_deg": light.elevation_deg,
+        "vwi": light.vwi,
+        "lights_tried": len(light.tried),
     }
 
 
