@@ -275,8 +275,7 @@ def limited(limit: Limit, scene: Scene, zones: tuple[str, ...]) -> tuple[str, ..
     InputError
         None of them.
     """
-    classes = {box.name: box.visibility for box in scene.boxes}
-    names = tuple(zone for zone in zones if limit.zone in (zone, classes.get(zone)))
+    names = scene.limited_zones(limit, zones)
     if not names:
         raise InputError.single(
             f"accept.{limit.zone}.{limit.measure}",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
@@ -197,3 +198,8 @@ class Scene:
     def stage_of(self, seam: str) -> Stage:
         """Return the stage in which a seam closes: the one that names it, else the first."""
         return next((stage for stage in self.stages if seam in stage.seams), self.stages[0])
+
+    def limited_zones(self, limit: Limit, zones: Iterable[str]) -> tuple[str, ...]:
+        """Of ``zones``, those that a limit is on: one zone, or all boxes of a class."""
+        classes = {box.name: box.visibility for box in self.boxes}
+        return tuple(zone for zone in zones if limit.zone in (zone, classes.get(zone)))

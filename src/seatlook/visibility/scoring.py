@@ -93,8 +93,7 @@ def _zones_of(limit: Limit, scene: Scene, view: View) -> tuple[str, ...]:
     """Zones in view that a limit names: one zone, or all boxes of a class."""
     names = view.solution.cover.zone_names
     shown = [names[k] for k in np.unique(view.region.zone[view.region.mask])]
-    classes = {box.name: box.visibility for box in scene.boxes}
-    named = tuple(name for name in shown if limit.zone in (name, classes.get(name)))
+    named = scene.limited_zones(limit, shown)
     if not named:
         raise InputError.single(
             f"accept.{limit.zone}.{limit.measure}",

@@ -10,25 +10,16 @@ from seatlook.io.scene.keys import scene_keys
 from seatlook.io.scene.read import load_scene
 from seatlook.io.surface import write_obj
 from seatlook.wrinkle import figure_names
+from support.example_scene import BLOCKS, EXAMPLE, write_example_files
 from support.io_samples import box
 
 ROOT = Path(__file__).parents[3]
 FIGURES = ", ".join(figure_names())
-EXAMPLE = re.findall(
-    r"```toml\n(.*?)```", (ROOT / "docs" / "reference" / "scene.md").read_text(), re.DOTALL
-)[0]
 
 
 @pytest.fixture
 def folder(tmp_path):
-    data = ROOT / "tests" / "data"
-    shutil.copy(data / "seat_cushion_demo_aama.dxf", tmp_path / "cover.dxf")
-    shutil.copy(data / "seat_cushion_demo.seams.toml", tmp_path / "cover.seams.toml")
-    write_obj(*box(), tmp_path / "foam.obj")
-    wire = np.array([[0.15, -0.23, 0.08], [0.15, 0.23, 0.08]])
-    names = ("wire left", "wire across", "frame front")
-    write_curves(dict.fromkeys(names, wire), tmp_path / "curves.toml")
-    return tmp_path
+    return write_example_files(tmp_path)
 
 
 @pytest.fixture
@@ -119,12 +110,9 @@ def test_smallest_scene_takes_the_defaults(load):
 
 
 def test_example_files_of_the_page_read(folder, load):
-    blocks = re.findall(
-        r"```toml\n(.*?)```", (ROOT / "docs" / "reference" / "scene.md").read_text(), re.DOTALL
-    )
-    assert len(blocks) == 3
+    assert len(BLOCKS) == 3
     sample = (folder / "cover.seams.toml").read_text()
-    head, seam = blocks[1].split("[[seam]]")
+    head, seam = BLOCKS[1].split("[[seam]]")
     start = sample.index('[edge."FRONT.top"]')
     stop = sample.index('[edge."FRONT.left"]')
     last = sample.rindex("[[seam]]")
@@ -134,7 +122,7 @@ def test_example_files_of_the_page_read(folder, load):
         f'\n[curve."{n}"]\npoints_mm = [[-150, 0, 80], [150, 0, 80]]\n'
         for n in ("wire across", "frame front")
     )
-    (folder / "curves.toml").write_text(blocks[2] + wires)
+    (folder / "curves.toml").write_text(BLOCKS[2] + wires)
     write_obj(*box(height=0.08), folder / "foam.obj")
     scene = load()
     assert scene.pattern.seams[-1].name == "front"

@@ -1,35 +1,19 @@
 """What a scene says of hem, hog rings and element sizes, and what is refused, with its line."""
 
 import re
-import shutil
 from dataclasses import replace
-from pathlib import Path
 
-import numpy as np
 import pytest
 
 import seatlook.io.scene.read as module
 from seatlook.flattening.pattern import cut_outline
-from seatlook.io.curves import write_curves
 from seatlook.io.scene.read import load_scene
-from seatlook.io.surface import write_obj
-from support.io_samples import box
-
-ROOT = Path(__file__).parents[3]
-EXAMPLE = re.findall(
-    r"```toml\n(.*?)```", (ROOT / "docs" / "reference" / "scene.md").read_text(), re.DOTALL
-)[0]
+from support.example_scene import EXAMPLE, write_example_files
 
 
 @pytest.fixture
 def load(tmp_path):
-    data = ROOT / "tests" / "data"
-    shutil.copy(data / "seat_cushion_demo_aama.dxf", tmp_path / "cover.dxf")
-    shutil.copy(data / "seat_cushion_demo.seams.toml", tmp_path / "cover.seams.toml")
-    write_obj(*box(), tmp_path / "foam.obj")
-    wire = np.array([[0.15, -0.23, 0.08], [0.15, 0.23, 0.08]])
-    names = ("wire left", "wire across", "frame front")
-    write_curves(dict.fromkeys(names, wire), tmp_path / "curves.toml")
+    write_example_files(tmp_path)
 
     def load(*changes):
         text = EXAMPLE
