@@ -75,6 +75,9 @@ if TYPE_CHECKING:
         bulb as bulb,
     )
     from seatlook.model import (
+        framed_view as framed_view,
+    )
+    from seatlook.model import (
         named_view as named_view,
     )
     from seatlook.model import (
@@ -131,6 +134,7 @@ _PUBLIC: dict[str, str] = {
     "flatten": "seatlook.flattening.files:flatten_surface",
     "init": "seatlook.chain.start",
     "load_scene": "seatlook.io.scene.read",
+    "framed_view": "seatlook.model",
     "named_view": "seatlook.model",
     "open": "seatlook.seat",
     "read_material": "seatlook.io.material",
@@ -165,6 +169,7 @@ __all__ = [
     "demo",
     "evaluate",
     "flatten",
+    "framed_view",
     "init",
     "load_scene",
     "named_view",

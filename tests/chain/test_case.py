@@ -10,7 +10,7 @@ import pytest
 import seatlook
 from seatlook import io
 from seatlook.errors import InputError
-from seatlook.model import VIEWS, named_view
+from seatlook.model import VIEWS, framed_view
 from support.scene_files import write_two_panels
 
 pytestmark = pytest.mark.render
@@ -44,10 +44,8 @@ def test_names_and_objects_mean_the_same(seat):
     assert np.array_equal(by_name, pixels(seat, suede.appearance, rig=bulb))
     # A supplied material that the scene does not name, and a view that it does not name.
     assert not np.array_equal(by_name, pixels(seat, "black-leather", rig="bulb"))
-    centre = (seat.scene.foam.vertices.min(axis=0) + seat.scene.foam.vertices.max(axis=0)) / 2
-    assert np.array_equal(
-        seat.camera("detail").position, named_view("detail", target=centre).position
-    )
+    detail = framed_view("detail", seat.scene.foam.vertices)
+    assert np.array_equal(seat.camera("detail").position, detail.position)
     assert seat.rig(None) is seat.scene.rigs[0]
 
 

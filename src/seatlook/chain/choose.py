@@ -7,11 +7,9 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TypeVar
 
-import numpy as np
-
 from seatlook import io
 from seatlook.errors import InputError, did_you_mean
-from seatlook.model import VIEWS, Appearance, Camera, Material, Rig, Scene, named_view
+from seatlook.model import VIEWS, Appearance, Camera, Material, Rig, Scene, framed_view
 
 _Named = TypeVar("_Named")
 Look = str | Appearance | Material | None
@@ -64,9 +62,7 @@ def camera_of(scene: Scene, camera: str | Camera | None) -> Camera:
     if camera in own or camera is None:
         return _chosen("view", camera, own)
     if camera in VIEWS:
-        vertices = scene.foam.vertices
-        centre = np.asarray((vertices.min(axis=0) + vertices.max(axis=0)) / 2)
-        return named_view(camera, target=centre)
+        return framed_view(camera, scene.foam.vertices)
     raise _unknown("view", camera, (*own, *VIEWS))
 
 

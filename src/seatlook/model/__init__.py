@@ -17,14 +17,12 @@ from seatlook.model.criteria import Criteria, CurvatureMode, StrainMeasure, crit
 from seatlook.model.field import Field
 from seatlook.model.light import (
     LIGHTS,
-    VIEWS,
     Camera,
     Light,
     Rig,
     booth,
     bulb,
     direction,
-    named_view,
     sun,
 )
 from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
@@ -33,6 +31,7 @@ from seatlook.model.scene import Design, Frame, Hook, Limit, Pose, Scene, Verdic
 from seatlook.model.shells import ShellResult, Shells, ShellState
 from seatlook.model.texture import TextureMaps
 from seatlook.model.thread import Thread
+from seatlook.model.view import VIEWS, framed_view, named_view, sphere_distance
 
 __all__ = [
     "LIGHTS",
@@ -83,7 +82,9 @@ __all__ = [
     "bulb",
     "criteria_of",
     "direction",
+    "framed_view",
     "named_view",
+    "sphere_distance",
     "stage_units",
     "sun",
 ]

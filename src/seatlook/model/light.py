@@ -244,7 +244,8 @@ class Camera:
 
         Examples
         --------
-        >>> named_view("top", target=np.zeros(3)).pixel(np.zeros(3))
+        >>> side = Camera(name="side", position=np.array([1.0, 0, 0]), target=np.zeros(3))
+        >>> side.pixel(np.zeros(3))
         (640.0, 360.0)
         """
         ahead = self.target - self.position
@@ -257,37 +258,3 @@ class Camera:
         x = float(away @ right) / depth
         y = float(away @ np.cross(right, ahead)) / depth
         return float(self.size[0] / 2 + focal * x), float(self.size[1] / 2 - focal * y)
-
-
-def named_view(
-    name: str, *, target: FloatArray, size: tuple[int, int] = (1280, 720), distance: float = 1.1
-) -> Camera:
-    """Camera of a named view, looking at ``target`` [m] from ``distance`` [m].
-
-    Examples
-    --------
-    >>> round(named_view("top", target=np.zeros(3)).pixels_per_degree)
-    45
-    """
-    if name not in VIEWS:
-        raise InputError.single("camera.view", got=name, expected=f"one of {', '.join(VIEWS)}")
-    azimuth, elevation, share = VIEWS[name]
-    up = np.array([0.0, 1.0, 0.0]) if elevation > 89 else np.array([0.0, 0.0, 1.0])
-    return Camera(
-        name=name,
-        position=np.asarray(target) + distance * share * direction(azimuth, elevation),
-        target=target,
-        up=up,
-        size=size,
-    )
-
-
-# azimuth, elevation [deg], share of the viewing distance
-VIEWS: MappingProxyType[str, tuple[float, float, float]] = MappingProxyType(
-    {
-        "driver_door": (75.0, 38.0, 1.75),
-        "front_34": (35.0, 40.0, 1.9),
-        "top": (0.0, 90.0, 2.0),
-        "detail": (35.0, 45.0, 0.6),
-    }
-)

@@ -116,7 +116,7 @@ class _Reader:
             "frames": make_frames(document, row, pattern, foam),
             "limits": make_limits(document, row["accept"], pattern, boxes),
             "rigs": make_rigs(document, row["rig"], self.files),
-            "cameras": make_cameras(document, row["camera"], _centre(foam)),
+            "cameras": make_cameras(document, row["camera"], foam),
         }
         check_wires(document, row, pattern, foam)
         check_overlap(document, pattern, parts["placement"])
@@ -277,10 +277,3 @@ class _Reader:
 
 def _thread(row: dict[str, Any]) -> Thread:
     return Thread(**{key.removesuffix("_mm"): v for key, v in row.items() if v is not None})
-
-
-def _centre(foam: Foam | None) -> FloatArray:
-    """Return the middle of the foam's bounding box, what the views look at."""
-    if foam is None:
-        return np.zeros(3)
-    return np.asarray((foam.vertices.min(axis=0) + foam.vertices.max(axis=0)) / 2)

@@ -14,7 +14,19 @@ from seatlook.io.panorama import read_panorama
 from seatlook.io.scene.files import SceneFiles
 from seatlook.io.schema import MM, Array, Kind, Number, Rows, Table, Text, Texts
 from seatlook.io.toml import Document, Key
-from seatlook.model import LIGHTS, VIEWS, Camera, FloatArray, Light, Rig, named_view
+from seatlook.model import (
+    LIGHTS,
+    VIEWS,
+    Camera,
+    FloatArray,
+    Foam,
+    Light,
+    Rig,
+    framed_view,
+    named_view,
+    sphere_distance,
+)
+from seatlook.model.view import DISTANCE
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +84,7 @@ RIG: dict[str, Kind] = {
 CAMERA: dict[str, Kind] = {
     "views": Texts(choices=tuple(VIEWS), or_one=True, default=("front_34",)),
     "target_mm": POINT,
-    "distance_mm": Number(above=0, scale=MM, default=1100.0),
+    "distance_mm": Number(above=0, scale=MM),
     "size": SIZE,
     "custom": Rows(
         Table(
@@ -118,15 +130,21 @@ def _sky(files: SceneFiles, number: int, row: dict[str, Any]) -> FloatArray | No
     return None if path is None else np.asarray(row["panorama_cd_m2"] * read_panorama(path))
 
 
-def make_cameras(document: Document, row: dict[str, Any], centre: FloatArray) -> tuple[Camera, ...]:
-    """Build the named views and the user's own cameras, looking at ``centre`` [m] by default."""
+def make_cameras(document: Document, row: dict[str, Any], foam: Foam | None) -> tuple[Camera, ...]:
+    """Build the named views and the user's own cameras; by default they look at the foam."""
     cameras = []
-    target = centre if row["target_mm"] is None else row["target_mm"]
+    seat = np.zeros((1, 3)) if foam is None else foam.vertices
+    middle = np.asarray((seat.min(axis=0) + seat.max(axis=0)) / 2)
+    target = middle if row["target_mm"] is None else row["target_mm"]
     size = _size(row["size"]) or (1280, 720)
+    framed = foam is not None and row["target_mm"] is None and row["distance_mm"] is None
+    distance = row["distance_mm"] or (DISTANCE if foam is None else sphere_distance(seat))
     for view in row["views"] or ():
         with document.blame(("camera", "views")):
             cameras.append(
-                named_view(view, target=target, size=size, distance=row["distance_mm"] or 1.1)
+                framed_view(view, seat, size=size)
+                if framed
+                else named_view(view, target=target, size=size, distance=distance)
             )
     for number, own in enumerate(row["custom"] or ()):
         if own["name"] is None or own["position_mm"] is None:
