@@ -33,31 +33,42 @@ def d3plot(
     deletion=None,
     rigid_part=None,
     names=None,
-    ids=True,
+    ids=(11, 12),
     control=None,
+    history=0,
+    plastic=False,
+    thermal=False,
+    strain_digit=False,
+    in_plane=1,
+    release="",
 ):
     """Bytes of one file.
 
     ``states``: list of (time, positions, thickness (e,), inner (e, 6), outer (e, 6)).
-    ``names``: part number (from 1) -> title. User numbers: nodes 1.., shells 101.., parts 11..
+    ``names``: number -> title. User numbers: nodes 1.., shells 101.., parts 11.. or ``ids``.
+    ``history``, ``plastic``, ``thermal``: further words of a shell's row, filled with noise.
     """
     real = word.replace("i", "f")
     e, n = len(shells), len(nodes)
     part = np.ones(e, dtype=int) if part is None else np.asarray(part)
     parts = int(part.max())
-    width = layers * 7 + 8 * 1 + 4 * thickness + 12 * strains
+    layered = in_plane * layers * (7 + history) + 8
+    tensors = 18 * plastic + 6 * thermal
+    width = layered + 4 * thickness + 12 * strains + tensors
     reported = np.ones(e, dtype=bool) if rigid_part is None else part != rigid_part
     head = np.zeros(64, dtype=word)
     narbs = 16 + n + solids + beams + e + 3 * parts if ids else 0
     values = {
         11: 1, 15: 3 if rigid_part is None else 5, 16: n, 17: 6, 18: globals_, 20: 1,
         21: int(velocity), 23: solids, 24: 1 if solids else 0, 27: 7, 28: beams, 30: 6,
-        31: e, 32: parts, 33: width, 39: narbs,
+        25: -1 if in_plane > 1 else 1, 31: e, 32: parts, 33: width, 35: history, 39: narbs,
         36: layers if deletion is None else -(10000 + layers),
         43: 1000, 44: 1000, 45: 1000, 46: 1000 if thickness else 0, 51: parts,
+        56: 100 * plastic + 1000 * thermal + 10000 * strain_digit,
     }  # fmt: skip
     for at, value in (values | (control or {})).items():
         head[at] = value
+    head[13:14] = np.frombuffer(release.encode().ljust(int(word[2])), dtype=word)
     out = [head]
     if rigid_part is not None:
         kinds = np.full(parts, 34)
@@ -70,20 +81,22 @@ def d3plot(
     if ids:
         out.append(np.array([-1, *[0] * 4, n, solids, beams, e, 0, 0, 0, 0, parts, 0, parts], word))
         runs = [np.arange(1, n + 1), 1 + np.arange(solids), 1 + np.arange(beams),
-                101 + np.arange(e), *[11 + np.arange(parts)] * 3]  # fmt: skip
+                101 + np.arange(e), *[np.array(ids[:parts])] * 3]  # fmt: skip
         out += [r.astype(word) for r in runs]
     out.append(_floats([END], real, word))
     if names:
         out += _titles(names, word)
         out.append(_floats([END], real, word))
+    noise = np.random.default_rng(width)
     for time, positions, t, inner, outer in states:
-        rows = [np.full((e, layers * 7 + 8), 0.125)]
+        rows = [noise.uniform(1, 2, (e, layered))]
         if thickness:
             rows += [np.asarray(t)[:, None], np.full((e, 2), 0.25)]
         if strains:
             rows += [inner, outer]
         if thickness:
             rows.append(np.full((e, 1), 0.5))
+        rows.append(noise.uniform(1, 2, (e, tensors)))
         row = np.hstack(rows)[reported]
         pieces = [[time], np.full(globals_, 0.75), np.ravel(positions)]
         pieces += [np.full(3 * n, 0.0625)] if velocity else []

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError, Problem
+from seatlook.io.lsdyna.d3plot_row import refuse, shell_row
 
 END_MARK = -999999.0
 RIGID = 20  # material type of rigid bodies, whose shells have no state data
@@ -76,11 +77,6 @@ class Layout:
         return self.word.replace("i", "f")
 
 
-def refuse(file: Path, key: str, got: object, expected: str, hint: str = "") -> InputError:
-    """Make the error of one problem of ``file``."""
-    return InputError.single(key, got=got, expected=expected, file=file, hint=hint)
-
-
 def word_type(file: Path, head: bytes) -> str:
     """Find the size and byte order of the words from the file type, word 11."""
     others = []
@@ -118,7 +114,7 @@ def read_layout(file: Path, words: Words, word: str) -> Layout:
     row_start = 1 + control["nglbv"] + _node_words(control) + _before_shells(control)
     rows_end = row_start + int(reported.sum()) * control["nv2d"]
     deleted = _deletion_words(control)
-    thickness, strain = _shell_row(file, control)
+    thickness, strain = shell_row(file, control)
     return Layout(
         file=file,
         word=word,
@@ -270,25 +266,6 @@ def _deletion_words(control: dict[str, int]) -> int:
     return control["numnp"] if control["maxint"] < 0 else 0
 
 
-def _shell_row(file: Path, control: dict[str, int]) -> tuple[int, int]:
-    """Return the words of thickness and strain within a shell's row, -1 where there is none.
-
-    NV2D must be explained to the last word; a file with more in it would be split wrongly.
-    """
-    layers = abs(control["maxint"]) % 10000 if control["maxint"] < 0 else control["maxint"]
-    on = {i: control[f"ioshl{i}"] == 1000 for i in (1, 2, 3, 4)}
-    per_layer = 6 * on[1] + on[2] + control["neips"]
-    idtdt = control["idtdt"]
-    tensors = 6 * layers * (idtdt // 100 % 10 == 1) + 6 * (idtdt // 1000 % 10 == 1)
-    points = (4, 1) if control["numds"] < 0 else (1,)
-    for in_plane in points:
-        layered = in_plane * layers * per_layer
-        plain = layered + 8 * on[3] + 4 * on[4] + tensors
-        if control["nv2d"] in (plain, plain + 12):
-            thickness = layered + 8 * on[3] if on[4] else -1
-            strain = layered + 8 * on[3] + 3 * on[4] if control["nv2d"] == plain + 12 else -1
-            return thickness, strain
-    raise refuse(
-        file, "NV2D", control["nv2d"], f"{plain} or, with STRFLG=1, {plain + 12} words per shell",
-        "the states hold more than this reader knows",
-    )  # fmt: skip
+def is_end(layout: Layout, words: Words, at: int) -> bool:
+    """Tell whether a mark of the end stands at word ``at``."""
+    return at < len(words) and float(words[at : at + 1].view(layout.real)[0]) == END_MARK

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -36,6 +36,13 @@ class ElementTable:
     titles: Mapping[int, str]
     usable: npt.NDArray[np.bool_]
 
+    def named(self, parts: Iterable[int]) -> str:
+        """Return numbers of parts with their titles, the first twenty."""
+        titles = self.titles
+        numbers = sorted(map(int, parts))
+        known = [f"{p} {titles[p]!r}" if titles.get(p) else str(p) for p in numbers[:20]]
+        return ", ".join([*known, "..."] if len(numbers) > 20 else known)
+
 
 @dataclass(frozen=True, slots=True)
 class Selection:
@@ -45,13 +52,13 @@ class Selection:
     ----------
     elements : (e,) int64     into the shells of the file
     nodes : (n,) int64        into the nodes of the file
-    dropped : shells of the chosen parts that have no results
+    inside : (shells of the file,) bool     those of the chosen parts, with results or without
     """
 
     shells: Shells
     elements: IntArray
     nodes: IntArray
-    dropped: int
+    inside: npt.NDArray[np.bool_]
 
 
 def unit_in_metres(name: str) -> float:
@@ -95,26 +102,31 @@ def select(
         node_count=len(nodes),
         reference=None if reference is None else reference[nodes],
     )
-    return Selection(shells, elements, nodes, int((inside & ~table.usable).sum()))
+    return Selection(shells, elements, nodes, inside)
 
 
 def _of_parts(table: ElementTable, parts: Sequence[int | str] | None) -> npt.NDArray[np.bool_]:
     if parts is None:
         return np.ones(len(table.part), dtype=bool)
-    titles = table.titles
-    numbers = {title.casefold(): number for number, title in titles.items()}
     there = {int(p) for p in np.unique(table.part)}
-    known = ", ".join(f"{p} {titles[p]!r}" if titles.get(p) else str(p) for p in sorted(there)[:20])
+    by_title: dict[str, list[int]] = {}
+    for number in sorted(there & set(table.titles)):
+        by_title.setdefault(table.titles[number].casefold(), []).append(number)
     problems: list[Problem] = []
     chosen = set()
     for name in parts:
-        number = int(name) if str(name).isdecimal() else numbers.get(str(name).casefold())
-        if number in there:
-            chosen.add(number)
-        else:
-            problems += InputError.single(
-                "parts", got=repr(name), expected=f"a part with shells: {known}", file=table.file
-            ).problems
+        wanted = str(name)
+        numbers = [int(wanted)] if wanted.isdecimal() else by_title.get(wanted.casefold(), [])
+        if len(numbers) == 1 and numbers[0] in there:
+            chosen.add(numbers[0])
+            continue
+        several = len(numbers) > 1
+        problems += InputError.single(
+            "parts", file=table.file,
+            got=f"{name!r}, the title of {len(numbers)} parts" if several else repr(name),
+            expected=f"one of their numbers: {', '.join(map(str, numbers))}" if several
+            else f"a part with shells: {table.named(there)}",
+        ).problems  # fmt: skip
     if problems:
         raise InputError(problems)
     return np.isin(table.part, list(chosen))
@@ -140,3 +152,12 @@ def finite(file: Path, key: str, values: FloatArray, numbers: IntArray) -> None:
         raise InputError.single(
             key, got=f"nan or inf in {len(bad)} rows, first {first}", expected="numbers", file=file
         )
+
+
+def text(raw: bytes) -> str:
+    """Read a title: UTF-8 where it is, else Latin-1; what stands behind a zero byte is padding."""
+    letters = raw.split(b"\0")[0].strip()
+    try:
+        return letters.decode()
+    except UnicodeDecodeError:
+        return letters.decode("latin-1")
