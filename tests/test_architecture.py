@@ -22,7 +22,6 @@ PACKAGE = ROOT / "src" / "seatlook"
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 # To be given fewer parameters; then these go.
 KNOWN_WIDE = {
-    "seatlook.io.lsdyna.element_tables.select",
     "seatlook.pbr.maps.face_map.render_map",
 }
 HEAVY = ("numba", "scipy", "vtk", "vtkmodules", "pyvista", "trimesh")

@@ -118,7 +118,7 @@ def test_table_of_the_page_puts_the_largest_ease_first():
     row = dict(zip(table.heads, table.rows[0], strict=True))
     assert row["ease [mm]"] == pytest.approx(-4.0)
     assert row["ease [%]"] == pytest.approx(-100 * 4 / 104)
-    assert row["most between notches [%]"] == pytest.approx(-6.25)
+    assert row["largest between notches [%]"] == pytest.approx(-6.25)
     assert row["notches"] == "1 matched"
     (unmatched,) = seam_table(notched((), (0.04,))).rows
     assert unmatched[-1] == "0 and 1: not matched"

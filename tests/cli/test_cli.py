@@ -331,7 +331,7 @@ def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
     ):
         assert part in page
     assert '<td class="missed">NO</td>' in page
-    assert "coarser than an eighth" in page
+    assert "larger than an eighth" in page
 
 
 @pytest.mark.render

@@ -90,7 +90,7 @@ def page_data(evaluation: Evaluation) -> PageData:
 
 
 def _zones(evaluation: Evaluation) -> Table:
-    """Zones, worst first, without the free edges, which are clamped or trimmed and say nothing."""
+    """Zones, worst first, without the free edges, which are clamped or trimmed."""
     columns = [column for index in INDICES.values() for column in index.columns]
     return Table(
         heads=(
@@ -139,7 +139,7 @@ def seam_table(scene: Scene) -> Table:
             "far side [mm]",
             "ease [mm]",
             "ease [%]",
-            "most between notches [%]",
+            "largest between notches [%]",
             "notches",
         ),
         rows=tuple(
@@ -192,13 +192,13 @@ def _warnings(evaluation: Evaluation) -> Iterator[str]:
         h, wave = number(1e3 * mesh.element_size), number(1e3 * mesh.wavelength)
         if mesh.level == "not resolved":
             yield (
-                f"{mesh.material}: elements of {h} mm are coarser than an eighth of its "
-                f"wavelength of {wave} mm; shape and indices are not resolved."
+                f"{mesh.material}: shape and indices are not resolved. Elements of {h} mm are "
+                f"larger than an eighth of the wavelength of its wrinkles, {wave} mm."
             )
         elif mesh.level == "shape only":
             yield (
-                f"{mesh.material}: elements of {h} mm resolve the shape of its wrinkles "
-                f"(wavelength {wave} mm), but not yet the indices, which need a twelfth."
+                f"{mesh.material}: the shape is resolved, the indices are not. Elements of {h} mm "
+                f"are larger than a twelfth of the wavelength of its wrinkles, {wave} mm."
             )
 
 

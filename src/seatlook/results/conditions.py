@@ -1,4 +1,4 @@
-"""What must hold before a result is believed, with the values that were reached."""
+"""What must hold before a result is trusted, with the values that were reached."""
 
 from __future__ import annotations
 
@@ -34,15 +34,17 @@ _CONDITIONS: Mapping[str, tuple[str, float, float, str]] = MappingProxyType(
         "kinetic_ratio": ("kinetic over elastic energy", verdict.KINETIC, 1.0, ""),
         "seam_gap_max": ("largest seam gap", verdict.SEAM_GAP, 1e3, "mm"),
         "hook_gap_max": ("largest distance of a hook from its wire", verdict.ANCHOR_GAP, 1e3, "mm"),
-        "frame_gap_max": ("largest distance of a free edge", verdict.ANCHOR_GAP, 1e3, "mm"),
+        "frame_gap_max": (
+            "largest distance of a free edge from its frame", verdict.ANCHOR_GAP, 1e3, "mm"
+        ),
         "contact_compression_max": (
-            "foam pressed, share of its thickness", verdict.COMPRESSION, 1e2, "%"
+            "foam compression, share of its thickness", verdict.COMPRESSION, 1e2, "%"
         ),
         "contact_resultant_error": (
-            "foam pressure against resultant", verdict.RESULTANT, 1e2, "%"
+            "difference of foam pressure and resultant", verdict.RESULTANT, 1e2, "%"
         ),
         "intersecting_pairs": ("pairs of triangles that pass through each other", 0.0, 1.0, ""),
-        "hem_crossing_pairs": ("triangles of a folded allowance that come through", 0.0, 1.0, ""),
+        "hem_crossing_pairs": ("triangles of the hem that come through", 0.0, 1.0, ""),
     }
 )  # fmt: skip
 

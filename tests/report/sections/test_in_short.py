@@ -33,8 +33,8 @@ def zone(name: str, *, share: float, stretch: float = 0.5, area: float = 0.01) -
 def test_a_smooth_cover_names_its_highest_zone():
     zones = Zones(zone("insert", share=0.0), zone("free edge", share=0.9))
     (sentence,) = wrinkled(zones)
-    assert sentence.startswith("Nowhere is W2 above 1")
-    assert sentence.endswith("Highest is insert with 0.200 (95 %).")
+    assert sentence.startswith("W2 is nowhere above 1")
+    assert sentence.endswith("Highest: insert, where 95 % of the area is below 0.200.")
     assert zones.share_above_one == 0
     assert list(wrinkled(Zones())) == []
 
@@ -44,7 +44,7 @@ def test_a_smooth_cover_names_its_highest_zone():
     [
         (0.9, "by stretch one way"),
         (0.1, "by excess fabric"),
-        (0.5, "by stretch and excess fabric alike"),
+        (0.5, "by stretch and excess fabric equally"),
     ],
 )
 def test_a_wrinkled_cover_says_where_and_why(stretch, cause):

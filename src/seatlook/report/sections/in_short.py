@@ -21,8 +21,8 @@ def wrinkled(assessment: Assessment) -> Iterator[str]:
     if share == 0:
         worst = max(inner, key=lambda row: row["w2_p95"])
         yield (
-            "Nowhere is W2 above 1: no valley is as sharp as the threshold. Highest is "
-            f"{worst.zone} with {number(worst['w2_p95'])} (95 %)."
+            "W2 is nowhere above 1: no valley is as sharp as the threshold. Highest: "
+            f"{worst.zone}, where 95 % of the area is below {number(worst['w2_p95'])}."
         )
         return
     worst = max(inner, key=lambda row: row["w2_area_share"] * row.area)
@@ -37,7 +37,7 @@ def _cause(stretch_share: float) -> str:
         return "by stretch one way"
     if stretch_share <= 1 - _MOSTLY:
         return "by excess fabric"
-    return "by stretch and excess fabric alike"
+    return "by stretch and excess fabric equally"
 
 
 def seen(cells: Mapping[tuple[str, str], float]) -> Iterator[str]:

@@ -152,10 +152,10 @@ def sentences(score: SceneScore) -> Iterator[str]:
         + (f", cut-off {number(1e3 * view.cutoff)} mm." if view.mode != "design" else ".")
     )
     yield (
-        f"Null gate: a cover without wrinkles scores {number(score.null)} at most, below "
+        f"A cover without wrinkles scores at most {number(score.null)}; the limit is "
         f"{number(NULL_LIMIT)}."
     )
-    yield "The constants of the score are not calibrated on people."
+    yield "The score is not yet calibrated by a jury of people."
 
 
 def draw_maps(
