@@ -14,7 +14,6 @@ from seatlook.model.cover import (
     stage_units,
 )
 from seatlook.model.criteria import Criteria, CurvatureMode, StrainMeasure, criteria_of
-from seatlook.model.field import Field
 from seatlook.model.light import (
     LIGHTS,
     Camera,
@@ -29,6 +28,7 @@ from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMateria
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
 from seatlook.model.scene import Design, Frame, Hook, Limit, Pose, Scene, Verdict, ZoneBox
 from seatlook.model.shells import ShellResult, Shells, ShellState
+from seatlook.model.table import Field
 from seatlook.model.texture import TextureMaps
 from seatlook.model.thread import Thread
 from seatlook.model.view import VIEWS, framed_view, named_view, sphere_distance

@@ -1,4 +1,4 @@
-"""A table as readers see it: heads with units, and numbers written alike in every row."""
+"""Values with what a reader must know about them: a table with its heads, a field with its unit."""
 
 from __future__ import annotations
 
@@ -8,6 +8,28 @@ from dataclasses import dataclass
 from html import escape
 
 from seatlook.errors import InputError
+from seatlook.model._check import FloatArray, floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Field:
+    """One value per face of a cover, as files for other programs carry it.
+
+    Parameters
+    ----------
+    name : in every file
+    unit : "1" for a number
+    meaning : one sentence
+    values : (m,) float64 [unit]
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    values: FloatArray
+
+    def __post_init__(self) -> None:
+        floats(self, "values", None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
