@@ -145,7 +145,7 @@ def test_recipe_light(clone):
 
 
 def test_recipe_view(clone):
-    clone.insert("model/view.py", '"driver_door": (75', '"rear_45": (150.0, 40.0, 1.9),\n        ')
+    clone.insert("model/light.py", '"driver_door": (75', '"rear_45": (150.0, 40.0, 1.9),\n        ')
     scene = clone.scene(('views = ["top"]', 'views = ["rear_45"]'))
     found = clone.load(scene, "scene.cameras[0].name, scene.cameras[0].position[1] > 0")
     assert found == "rear_45 True"

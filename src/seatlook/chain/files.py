@@ -26,11 +26,14 @@ Row = Mapping[str, object]
 def reusable(solution: Solution, scene: Scene, *, settings: str = SETTINGS) -> bool:
     """Whether a result may stand for solving a scene: converged, and of all that goes in.
 
+    A result from before the verdict looked where the cover is has no figure of it: it is not taken.
+
     The digest is of the whole scene with every file it names, seed and element size among it;
     ``settings`` is of the solver, its revision among it.
     """
     return (
         solution.status == "converged"
+        and (solution.cover.foam is None or "untouched" in solution.figures)
         and solution.settings == settings
         and of_scene(solution, scene)
     )

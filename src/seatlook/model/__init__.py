@@ -16,12 +16,16 @@ from seatlook.model.cover import (
 from seatlook.model.criteria import Criteria, CurvatureMode, StrainMeasure, criteria_of
 from seatlook.model.light import (
     LIGHTS,
+    VIEWS,
     Camera,
     Light,
     Rig,
     booth,
     bulb,
     direction,
+    framed_view,
+    named_view,
+    sphere_distance,
     sun,
 )
 from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
@@ -31,7 +35,6 @@ from seatlook.model.shells import ShellResult, Shells, ShellState
 from seatlook.model.table import Field
 from seatlook.model.texture import TextureMaps
 from seatlook.model.thread import Thread
-from seatlook.model.view import VIEWS, framed_view, named_view, sphere_distance
 
 __all__ = [
     "LIGHTS",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from seatlook.model import Solution
-from seatlook.solver.process import verdict
+from seatlook.solver.process import coverage, verdict
 from seatlook.solver.process.process import RESIDUAL
 
 
@@ -43,6 +43,15 @@ _CONDITIONS: Mapping[str, tuple[str, float, float, str]] = MappingProxyType(
         "contact_resultant_error": (
             "difference of foam pressure and resultant", verdict.RESULTANT, 1e2, "%"
         ),
+        **{
+            coverage.buried(depth): (
+                f"share of the cover more than {1e3 * depth:.0f} mm deep in the foam",
+                share, 1e2, "%",
+            )
+            for depth, share in coverage.BURIED.items()
+        },
+        "bare_foam": ("foam bare above the cover, to the cover's area", coverage.BARE, 1e2, "%"),
+        "untouched": ("share of the cover that does not touch", coverage.UNTOUCHED, 1e2, "%"),
         "intersecting_pairs": ("pairs of triangles that pass through each other", 0.0, 1.0, ""),
         "hem_crossing_pairs": ("triangles of the hem that come through", 0.0, 1.0, ""),
     }

@@ -80,7 +80,8 @@ def solve(
     Solution
         ``status`` is "converged" when the largest out-of-balance force is below 1e-3 of the mean
         elastic nodal force, seams are closed to 0.1 mm, kinetic energy is below 1e-4 of the
-        elastic, and the foam stays within its curve; else ``reason`` says what is not.
+        elastic, the foam stays within its curve, and the cover lies on it, neither buried in it nor
+        below bare foam; else ``reason`` says what is not.
 
     Raises
     ------

@@ -26,7 +26,7 @@ from seatlook.model import (
     named_view,
     sphere_distance,
 )
-from seatlook.model.view import DISTANCE
+from seatlook.model.light import DISTANCE
 
 
 @dataclass(frozen=True, slots=True)

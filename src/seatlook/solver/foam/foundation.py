@@ -31,7 +31,7 @@ class Foundation:
         area = np.zeros(len(cover.rest))
         np.add.at(area, cover.faces, cover.rest_area[:, None] / 3.0)
         field = distance_field(foam.vertices, foam.faces)
-        self.material, self.wavelength = foam.material, float(waves.min())
+        self.foam, self.material, self.wavelength = foam, foam.material, float(waves.min())
         below = half[panel] if cover.hem is None else half[panel] + cover.hem.lift
         self.contact = FoamContact(field, below, springs[panel], area)
         self.friction = Friction(self.contact, foam.material.friction)

@@ -8,6 +8,7 @@ import numpy as np
 
 from seatlook.errors import InvertedElementError
 from seatlook.solver.foam.foundation import Foundation
+from seatlook.solver.process.coverage import coverage
 from seatlook.solver.process.crossing import (
     crossing_pairs,
     hem_crossings,
@@ -35,6 +36,7 @@ def reasons(process: Process, record: Record) -> list[str]:
     causes = unrest(process, record)
     if process.foundation is not None:
         causes += _contact_reasons(process, process.foundation)
+        causes += coverage(process.cover, process.x, process.foundation).reasons()
     return causes
 
 
@@ -73,6 +75,7 @@ def figures(process: Process, records: Sequence[Record]) -> dict[str, float]:
     if process.foundation is not None:
         result |= process.foundation.figures(process.state)
         result["contact_resultant_error"] = _resultant_error(process)
+        result |= coverage(process.cover, process.x, process.foundation).figures()
         result["wavelength"] = process.foundation.wavelength
         result["wavelength_over_h"] = process.foundation.wavelength / process.cover.element_size
     return result
@@ -116,7 +119,8 @@ def _contact_reasons(process: Process, foundation: Foundation) -> list[str]:
     if compression >= COMPRESSION:
         causes.append(f"foam compressed by {100 * compression:.0f} % of its thickness")
     error = _resultant_error(process)
-    if error > RESULTANT:
+    # Without contact there is no pressure to compare: then it is said that nothing touches.
+    if error > RESULTANT and figures["contact_vertices"]:
         causes.append(f"foam pressure and resultant differ by {100 * error:.2g} %")
     return causes
 
