@@ -123,7 +123,8 @@ def test_includes_are_followed_and_loops_are_named(write, problems):
     ]
     main.write_text("*KEYWORD\n*INCLUDE\nabsent.k\n")
     assert problems(read_keyword, main) == [
-        "d.k:3: *INCLUDE: got 'absent.k', expected a readable file"
+        "d.k:3: *INCLUDE: got 'absent.k', expected a readable file (sought beside the decks and "
+        "in *INCLUDE_PATH)"
     ]
 
 
@@ -135,15 +136,18 @@ def test_the_dynain_sample(problems):
         np.full(800, 0.012 * np.sqrt(2)), rel=2e-3
     )
     assert problems(read_keyword, path) == [
-        "bent_strip_dynain.k: thickness: got none for 800 shells, first 1, expected "
-        "*SECTION_SHELL or *ELEMENT_SHELL_THICKNESS (or say the thickness)"
+        "bent_strip_dynain.k: thickness: got none for 800 shells of part 1, first 1, expected "
+        "*SECTION_SHELL, *PART_COMPOSITE or *ELEMENT_SHELL_THICKNESS of this part (or say the "
+        "thickness)"
     ]
 
 
 def test_a_shell_without_an_entry_is_unstrained_and_told(write):
     result = read_keyword(write("d.k", deck(strains=strain_cards()[:4])))
     assert (result.read(0).strain_outer[1] == 0).all()
-    assert result.notes == ("1 shells have no strains in the deck and count as unstrained",)
+    assert result.notes == (
+        "1 shells have no strains in the deck and count as unstrained: part 3 'Insert'",
+    )
 
 
 def test_no_strains_need_a_reference(write, problems):
@@ -168,8 +172,8 @@ def test_no_strains_need_a_reference(write, problems):
         (("*KEYWORD", "KEYWORD"), "d.k: file: got no keyword on the first line"),
         (("*NODE", "*NODES"), "d.k: *NODE: got none, expected nodes"),
         (("*ELEMENT_SHELL", "*ELEMENT_SOLID"), "d.k: *ELEMENT_SHELL: got none, expected shells"),
-        (("*ELEMENT_SHELL", "*ELEMENT_SHELL_COMPOSITE"),
-         "d.k:9: *ELEMENT_SHELL_COMPOSITE: got option COMPOSITE, expected THICKNESS, BETA,"),
+        (("*ELEMENT_SHELL", "*ELEMENT_SHELL_DOF"),
+         "d.k:9: *ELEMENT_SHELL_DOF: got option DOF, expected THICKNESS, BETA, MCID, OFFSET or"),
         (("              10               0", "              1O               0"),
          "d.k:5: *NODE: got '1O', expected a number"),
         (("              10               0", "             nan               0"),
@@ -183,13 +187,21 @@ def test_no_strains_need_a_reference(write, problems):
         (("       9       3       2", "     9.5       3       2"),
          "d.k:11: *ELEMENT_SHELL: got '9.5', expected a whole number"),
         (("       1.2       1.2       1.2       1.2", "         0"),
-         "d.k: thickness: got none for 2 shells, first 7"),
+         "d.k: thickness: got none for 2 shells of part 3 'Insert', first 7"),
         (("       1.2       1.2       1.2       1.2", "    &thick"),
-         "d.k:17: *SECTION_SHELL: got '&thick', expected a number (parameters are not read)"),
+         "d.k:17: *SECTION_SHELL: got '&thick', expected a number (parameters are not read:"),
         (("         7         1         2", "         7         1         1"),
-         "d.k:21: *INITIAL_STRAIN_SHELL: got '0.001', expected a whole number"),
-        (("         7         1         2", "         7         0         2"),
-         "d.k:19: *INITIAL_STRAIN_SHELL: got NPLANE 0, NTHICK 2, LARGE 0, expected 1 to 99"),
+         "d.k:21: *INITIAL_STRAIN_SHELL: got '0.0025', expected a whole number"),
+        (("         7         1         2", "         7       100         2"),
+         "d.k:19: *INITIAL_STRAIN_SHELL: got number 7, NPLANE 100, NTHICK 2, LARGE 0, expected a"),
+        (("         7         1         2", "                   1         2"),
+         "d.k:19: *INITIAL_STRAIN_SHELL: got number 0, NPLANE 1, NTHICK 2, LARGE 0, expected a"),
+        (("         9         1         2", "         7         1         2"),
+         "d.k: *INITIAL_STRAIN_SHELL: got shell 7 more than once, expected one entry for each"),
+        (("*NODE", "*NODE_TRANSFORM\n*NODE"),
+         "d.k:2: *NODE_TRANSFORM: got a keyword that is not followed, expected no nodes that"),
+        (("*NODE", "*INCLUDE_NASTRAN\na.nas\n*NODE"),
+         "d.k:2: *INCLUDE_NASTRAN: got a kind of include that is not read, expected *INCLUDE,"),
         (("         7         1         2", "         7         1         9"),
          "d.k:19: *INITIAL_STRAIN_SHELL: got too few cards, expected 9 cards of strains"),
         (("         0         0       1.0", "         0         0        -1"),

@@ -12,9 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError
+from seatlook.io.lsdyna.placement import DECK, Placement
 from seatlook.model import FloatArray, IntArray
 
 LONG_WIDTH = 20
+_PARAMETER = "parameters are not read: write the number here, or let LS-DYNA write a dynain"
 _SHORT_EXPONENT = re.compile(rb"(?<=[0-9.])[dD]?(?=[+-]\d+$)")
 
 Bytes = npt.NDArray[np.bytes_]
@@ -29,6 +31,7 @@ class Block:
     name : in capitals, without the star
     width : of identity fields when the deck is not in standard format; 0 in standard format
     lines : (k,) int64      line of each card, from 1
+    place : how *INCLUDE_TRANSFORM places the file that the block stands in
     """
 
     file: Path
@@ -37,6 +40,7 @@ class Block:
     width: int
     cards: list[bytes]
     lines: list[int]
+    place: Placement = DECK
 
     def table(self, widths: Sequence[int], rows: slice = slice(None)) -> Table:
         """Read cards as columns of the given standard widths."""
@@ -83,11 +87,15 @@ class Table:
                 values[row, column] = number
             except (ValueError, OverflowError) as error:
                 shown = field.decode("latin-1")
-                hint = "parameters are not read" if shown.startswith("&") else ""
+                hint = _PARAMETER if "&" in shown else ""
                 raise self.problem(row, repr(shown), "a number", hint) from error
             if kind is np.int64 and number != int(number):
                 raise self.problem(row, repr(field.decode("latin-1")), "a whole number")
         return values
+
+    def words(self, column: int) -> list[str]:
+        """Return a column as text in capitals."""
+        return [field.decode("latin-1").strip().upper() for field in self.fields[:, column]]
 
     def problem(self, row: int, got: str, expected: str, hint: str = "") -> InputError:
         """Make the error of card ``row``."""
@@ -95,6 +103,14 @@ class Table:
             f"*{self.block.name}", got=got, expected=expected, hint=hint,
             file=self.block.file, line=int(self.lines[row]),
         )  # fmt: skip
+
+
+def refuse(block: Block, got: str, expected: str, card: int | None = None) -> InputError:
+    """Make the error of a keyword, or of one of its cards."""
+    line = block.line if card is None else block.lines[card]
+    return InputError.single(
+        f"*{block.name}", got=got, expected=expected, file=block.file, line=line
+    )
 
 
 def _fields(cards: Sequence[bytes], widths: Sequence[int]) -> Bytes:

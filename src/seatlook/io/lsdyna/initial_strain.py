@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.io.lsdyna.cards import LONG_WIDTH, Block
+from seatlook.io.lsdyna.placement import shifted
+from seatlook.io.lsdyna.shell_sets import of_set
+from seatlook.io.lsdyna.transformation import Transformations
 from seatlook.model import FloatArray, IntArray
 from seatlook.model.shells import StrainAxes
 
@@ -17,12 +20,12 @@ _MOST = 99  # integration points in the plane or over the thickness
 
 @dataclass(frozen=True, slots=True)
 class SurfaceStrains:
-    """Strains (e, 3, 3) on both surfaces; ``absent`` shells have no entry and are unstrained."""
+    """Strains (e, 3, 3) on both surfaces; ``absent`` are without an entry and unstrained."""
 
     inner: FloatArray
     outer: FloatArray
     axes: StrainAxes
-    absent: int
+    absent: IntArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,9 +36,15 @@ class _Points:
     level: FloatArray
     six: FloatArray
     local: bool
+    first: bool  # of the points of an entry
 
 
-def surface_strains(blocks: Sequence[Block], element_ids: IntArray) -> SurfaceStrains | None:
+def surface_strains(
+    blocks: Sequence[Block],
+    element_ids: IntArray,
+    transformations: Transformations,
+    sets: Mapping[int, IntArray | Block],
+) -> SurfaceStrains | None:
     """Return the strains on the surfaces, None where the deck has none.
 
     The points of one element are averaged over its plane and a straight line through its levels is
@@ -44,9 +53,11 @@ def surface_strains(blocks: Sequence[Block], element_ids: IntArray) -> SurfaceSt
     Raises
     ------
     InputError
-        Points on one level only, which do not show the bending; local and global axes mixed.
+        Points on one level only, which do not show the bending; local and global axes mixed; a
+        shell with two entries; a set that is not there or not read.
     """
-    groups = [points for block in blocks for points in _groups(block)]
+    groups = [_placed(p, block, transformations, sets) for block in blocks for p in _groups(block)]
+    groups = [points for points in groups if len(points.element)]
     if not groups:
         return None
     if len({g.local for g in groups}) > 1:
@@ -62,10 +73,41 @@ def surface_strains(blocks: Sequence[Block], element_ids: IntArray) -> SurfaceSt
     if not inside.any():
         return None
     level, six = (np.concatenate([getattr(g, n) for g in groups])[inside] for n in ("level", "six"))
+    _once(blocks[0], np.concatenate([g.element for g in groups if g.first]))
     ends = _to_surfaces(blocks[0], row[inside], level, six, element_ids)
     axes: StrainAxes = "element" if groups[0].local else "global"
-    absent = len(element_ids) - len(np.unique(row[inside]))
+    absent = np.setdiff1d(np.arange(len(element_ids)), row[inside])
     return SurfaceStrains(_tensors(ends[0]), _tensors(ends[1]), axes, absent)
+
+
+def _placed(
+    points: _Points,
+    block: Block,
+    transformations: Transformations,
+    sets: Mapping[int, IntArray | Block],
+) -> _Points:
+    """Give points to the shells of a set, and move them with the file they stand in."""
+    element, level, six = points.element, points.level, points.six
+    if block.name.endswith("_SET"):
+        members = [of_set(block, int(n) + block.place.sets, sets) for n in element]
+        each = [len(m) for m in members]
+        element = np.concatenate(members)
+        level, six = np.repeat(level, each), np.repeat(six, each, axis=0)
+    else:
+        element = shifted(element, block.place.element)
+    if block.place.moves and not points.local:
+        six = transformations.frame(block.place).turned(six)
+    return _Points(element, level, six, points.local, points.first)
+
+
+def _once(block: Block, element: IntArray) -> None:
+    """Refuse a second entry for a shell: it would be mixed with the first."""
+    numbers, count = np.unique(element, return_counts=True)
+    if (count > 1).any():
+        got = f"shell {numbers[count > 1][0]} more than once"
+        raise InputError.single(
+            "*INITIAL_STRAIN_SHELL", got=got, expected="one entry for each shell", file=block.file
+        )
 
 
 def _to_surfaces(
@@ -103,21 +145,28 @@ def _groups(block: Block) -> list[_Points]:
     at = 0
     while at < len(block.cards):
         head = block.table([10] * 8, slice(at, at + 1))
-        plane, levels, large, local = head.ints(1, 2, 3, 7)[0].tolist()
-        if not (1 <= plane <= _MOST and 1 <= levels <= _MOST and large in (0, 1)):
+        number, plane, levels, large, local = head.ints(0, 1, 2, 3, 7)[0].tolist()
+        if not (number > 0 and 0 <= plane <= _MOST and 0 <= levels <= _MOST and large in (0, 1)):
             raise head.problem(
-                0, f"NPLANE {plane}, NTHICK {levels}, LARGE {large}",
-                f"1 to {_MOST} points, LARGE 0 or 1",
+                0, f"number {number}, NPLANE {plane}, NTHICK {levels}, LARGE {large}",
+                f"a number, up to {_MOST} points, LARGE 0 or 1",
             )  # fmt: skip
-        points, lines = plane * levels, 1 + large
+        blank = levels == 0
+        points, lines = max(plane, 1) * (levels or 2), 1 + large
         step = 1 + points * lines
         run = _run(block, at, step)
         if at + run * step > len(block.cards):
             raise head.problem(0, "too few cards", f"{step - 1} cards of strains", "cut short?")
         element = block.table([10], slice(at, at + run * step, step)).ints(0)[:, 0]
-        for k in range(points):
-            values = _values(block, slice(at + 1 + k * lines, at + run * step, step), large)
-            groups.append(_Points(element, values[:, 6], values[:, :6], bool(local)))
+        values = [
+            _values(block, slice(at + 1 + k * lines, at + run * step, step), large)
+            for k in range(points)
+        ]
+        if blank and points == 2 and not any(v[:, 6].any() for v in values):
+            # Without NTHICK and T: the inner surface, then the outer.
+            values[0][:, 6], values[1][:, 6] = -1.0, 1.0
+        for k, v in enumerate(values):
+            groups.append(_Points(element, v[:, 6], v[:, :6], bool(local), k == 0))
         at += run * step
     return groups
 
@@ -126,8 +175,14 @@ def _values(block: Block, rows: slice, large: int) -> FloatArray:
     """Six strains and the level T of one point of every entry."""
     if not large:
         return block.table([10] * 7, rows).floats(*range(7))
-    first = block.table([16] * 5, rows).floats(*range(5))
-    second = block.table([16] * 2, slice(rows.start + 1, rows.stop, rows.step)).floats(0, 1)
+    after = slice(rows.start + 1, rows.stop, rows.step)
+    # 16 columns a field; some programs write 20, which makes longer cards.
+    longest = max(
+        len(block.cards[rows.start].rstrip()) - 80, len(block.cards[after.start].rstrip()) - 32
+    )
+    width = LONG_WIDTH if longest > 0 and b"," not in block.cards[rows.start] else 16
+    first = block.table([width] * 5, rows).floats(*range(5))
+    second = block.table([width] * 2, after).floats(0, 1)
     return np.concatenate([first, second], axis=1)
 
 
