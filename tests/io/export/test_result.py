@@ -178,6 +178,28 @@ def test_content_that_is_no_solution(tmp_path, problems, change):
     assert message.startswith("r.npz: file: got ")
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[" * 100_000,
+        "9" * 5000,
+        "7",
+        '{"format": "seatlook result", "format_version": Infinity}',
+        '{"format": "seatlook result", "format_version": "1"}',
+        '{"format": "seatlook result", "format_version": 1}',
+        '{"format": "seatlook result", "format_version": 1, "solution": {"map": 1}}',
+        '{"format": "seatlook result", "format_version": 1, "solution": {"type": []}}',
+        f'{{"format": "seatlook result", "format_version": 1, "solution": {"[" * 900}{"]" * 900}}}',
+    ],
+    ids=lambda text: text[:60],
+)
+def test_meta_of_another_kind(tmp_path, problems, text):
+    np.savez(tmp_path / "r.npz", meta=np.array(text))
+    (message,) = problems(read_result, tmp_path / "r.npz")
+    assert message.startswith("r.npz: file: got ")
+    assert message.endswith("expected a whole result file of seatlook")
+
+
 def test_missing_file(tmp_path, problems):
     assert problems(read_result, tmp_path / "r.npz") == [
         "r.npz: file: got no such file, expected a file"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -13,8 +11,8 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError
 from seatlook.files import write_bytes
+from seatlook.io.npz import read_npz, write_npz
 from seatlook.io.schema import shown
-from seatlook.io.toml import read_file
 
 Pixels = npt.NDArray[np.uint8]
 Shapes = npt.NDArray[np.float32]
@@ -22,9 +20,7 @@ Shapes = npt.NDArray[np.float32]
 
 def write_shapes(path: Path, times: Sequence[float], shapes: Shapes) -> None:
     """Write the positions (k, n, 3) [m] at ``times`` (k,) [s]; single precision, for pictures."""
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, times=np.array(times, dtype=float), positions=shapes)
-    write_bytes(path, buffer.getvalue())
+    write_npz({"times": np.array(times, dtype=float), "positions": shapes}, path)
 
 
 def read_shapes(path: Path) -> tuple[npt.NDArray[np.float64], Shapes]:
@@ -35,18 +31,21 @@ def read_shapes(path: Path) -> tuple[npt.NDArray[np.float64], Shapes]:
     InputError
         When the file is absent, damaged or something else.
     """
-    content = read_file(path)
-    try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-            times, positions = archive["times"], archive["positions"]
-    except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:
+    arrays = read_npz(path, expected="shapes of a stage")
+    if sorted(arrays) != ["positions", "times"]:
         raise InputError.single(
-            "file", got=f"{type(error).__name__}: {error}", expected="shapes of a stage", file=path
-        ) from error
-    if positions.ndim != 3 or positions.shape[2] != 3 or len(times) != len(positions):
-        raise InputError.single(
-            "file", got=f"positions {positions.shape}", expected=f"({len(times)}, n, 3)", file=path
+            "file", got=shown(sorted(arrays)), expected="times and positions", file=path
         )
+    times, positions = arrays["times"], arrays["positions"]
+    if times.dtype.kind != "f" or positions.dtype.kind != "f":
+        raise InputError.single(
+            "file", got=f"{times.dtype}, {positions.dtype}", expected="numbers", file=path
+        )
+    if positions.ndim != 3 or positions.shape[2] != 3 or times.shape != positions.shape[:1]:
+        raise InputError.single(
+            "file", got=f"times {times.shape}, positions {positions.shape}",
+            expected="(k,) and (k, n, 3)", file=path,
+        )  # fmt: skip
     return times, positions.astype(np.float32, copy=False)
 
 

@@ -9,9 +9,7 @@ harm.
 from __future__ import annotations
 
 import dataclasses
-import io
 import json
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -20,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.files import write_bytes
-from seatlook.io.toml import read_file
+from seatlook.io.npz import Arrays, read_npz, write_npz
+from seatlook.io.schema import shown
 from seatlook.model import (
     Anchor,
     Appearance,
@@ -43,6 +41,7 @@ from seatlook.model import (
 
 FORMAT = "seatlook result"
 FORMAT_VERSION = 1
+_WHOLE = "a whole result file of seatlook"
 
 _TYPES: dict[str, type] = {
     t.__name__: t
@@ -65,9 +64,7 @@ def write_result(solution: Solution, path: Path | str) -> None:
     arrays: dict[str, Any] = {}
     tree = _packed(solution, "", arrays)
     meta = {"format": FORMAT, "format_version": FORMAT_VERSION, "solution": tree}
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, meta=np.array(json.dumps(meta)), **arrays)
-    write_bytes(Path(path), buffer.getvalue())
+    write_npz({"meta": np.array(json.dumps(meta)), **arrays}, Path(path))
 
 
 def read_result(path: Path | str) -> Solution:
@@ -79,35 +76,39 @@ def read_result(path: Path | str) -> Solution:
         When the file is absent, cut short, damaged, no result of seatlook, or of a newer version.
     """
     path = Path(path)
-    content = read_file(path)
-    try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
-        meta = json.loads(str(arrays.pop("meta")))
-        known = meta["format"] == FORMAT
-        version = int(meta["format_version"])
-    # NumPy and zipfile raise these on content that is cut short, damaged or another format.
-    except (OSError, EOFError, KeyError, ValueError, TypeError, AttributeError,
-            zipfile.BadZipFile, NotImplementedError) as error:  # fmt: skip
-        raise _refusal(path, f"{type(error).__name__}: {error}") from error
-    if not known:
-        raise _refusal(path, f"format {meta['format']!r}")
-    if version > FORMAT_VERSION:
-        raise InputError.single(
-            "format_version", got=version, expected=f"at most {FORMAT_VERSION}", file=path,
-            hint="the file was written by a newer seatlook",
-        )  # fmt: skip
+    arrays = read_npz(path, expected=_WHOLE)
+    meta = _meta(path, arrays)
     try:
         solution = _unpacked(meta["solution"], arrays, {})
-    except (KeyError, TypeError, ValueError) as error:
+    # What a tree that is no solution ends in; recursion: lists in lists in lists.
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise _refusal(path, f"{type(error).__name__}: {error}") from error
     if not isinstance(solution, Solution):
         raise _refusal(path, type(solution).__name__)
     return solution
 
 
+def _meta(path: Path, arrays: Arrays) -> dict[str, Any]:
+    """Take ``meta`` out of the arrays and check whose file it is."""
+    try:
+        meta: dict[str, Any] = json.loads(str(arrays.pop("meta")))
+        name, version = meta["format"], meta["format_version"]
+    except (KeyError, TypeError, ValueError, RecursionError) as error:
+        raise _refusal(path, f"{type(error).__name__}: {error}") from error
+    if name != FORMAT:
+        raise _refusal(path, f"format {shown(name)}")
+    if isinstance(version, int) and version > FORMAT_VERSION:
+        raise InputError.single(
+            "format_version", got=version, expected=f"at most {FORMAT_VERSION}", file=path,
+            hint="the file was written by a newer seatlook",
+        )  # fmt: skip
+    if version != FORMAT_VERSION:
+        raise _refusal(path, f"version {shown(version)}")
+    return meta
+
+
 def _refusal(path: Path, got: str) -> InputError:
-    return InputError.single("file", got=got, expected="a whole result file of seatlook", file=path)
+    return InputError.single("file", got=got, expected=_WHOLE, file=path)
 
 
 def _packed(value: Any, at: str, arrays: dict[str, Any]) -> Any:
@@ -149,5 +150,5 @@ def _unpacked(node: Any, arrays: Mapping[str, Any], maps: dict[str, Any]) -> Any
     if "map" in node:
         return MappingProxyType({k: _unpacked(v, arrays, maps) for k, v in node["map"].items()})
     fields = {k: _unpacked(v, arrays, maps) for k, v in node.items() if k != "type"}
-    made = _TYPES[node["type"]](**fields)
-    return maps.setdefault(json.dumps(node), made) if isinstance(made, TextureMaps) else made
+    value = _TYPES[node["type"]](**fields)
+    return maps.setdefault(json.dumps(node), value) if isinstance(value, TextureMaps) else value
