@@ -64,6 +64,9 @@ if TYPE_CHECKING:
     from seatlook.io.pattern.dxf import (
         read_dxf as read_dxf,
     )
+    from seatlook.io.pattern.dxf import (
+        report_dxf as report_dxf,
+    )
     from seatlook.io.pattern.dxf_write import (
         write_dxf as write_dxf,
     )
@@ -119,6 +122,7 @@ _PUBLIC: dict[str, str] = {
     "read_shapes": "seatlook.io.export.film",
     "read_shells": "seatlook.io.lsdyna.shells",
     "read_surface": "seatlook.io.surface",
+    "report_dxf": "seatlook.io.pattern.dxf",
     "write_animation": "seatlook.io.export.film",
     "write_curves": "seatlook.io.curves",
     "write_dxf": "seatlook.io.pattern.dxf_write",
@@ -152,6 +156,7 @@ __all__ = [
     "read_shapes",
     "read_shells",
     "read_surface",
+    "report_dxf",
     "write_animation",
     "write_curves",
     "write_dxf",

@@ -18,6 +18,8 @@ _ON_LINE_MM = 0.01  # off the line between its neighbours, where a mouth is no v
 _LONGEST = 8.0  # way round a cut over its size
 _ONE_NOTCH_MM = 2.0  # a cut and a point that are closer are one notch
 _SAME_MM = 0.2  # by which shapes inside a cut differ
+SLIT_MM = 0.5  # a cut that is no wider is a slit
+DEEPEST_SLIT = 3.0  # over the size below which other cuts are closed
 
 
 class Cut(NamedTuple):
@@ -29,7 +31,7 @@ class Cut(NamedTuple):
 
 
 def close_cuts(points: FloatArray, below: float) -> tuple[FloatArray, tuple[Notch, ...]]:
-    """Close the cuts that are less deep and less wide than ``below``.
+    """Close the cuts that are less deep and less wide than ``below``, and slits 3 times as deep.
 
     A cut leaves the outline at a turn, stays inside, and comes back to where the outline goes on
     in the same direction; so neither a chamfer nor a corner nor a curve is one.
@@ -110,7 +112,8 @@ def _cut(points: FloatArray, first: int, last: int, below: float) -> Cut | None:
     away = (_unit(inner[1] - inner[0]), _unit(inner[-1] - inner[-2]))
     turned = away[0] @ inward > np.sin(limit) and away[1] @ inward < -np.sin(limit)
     goes_on = abs(depth[-1]) <= max(np.tan(limit) * s[-1], _SAME_MM) and s[-1] > -_SAME_MM
-    small = np.ptp(s) < below and depth.max() < below
+    deepest = DEEPEST_SLIT * below if np.ptp(s) < SLIT_MM else below
+    small = np.ptp(s) < below and depth.max() < deepest
     if not (turned and goes_on and small and depth[1:-1].min() > 0.0):
         return None
     notch = Notch(

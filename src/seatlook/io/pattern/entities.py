@@ -1,73 +1,171 @@
-"""The entities of a pattern file, layer by layer."""
+"""The entities of a piece, sorted by layer; nested blocks are put in their place."""
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import ezdxf.path
 import numpy as np
 from ezdxf.lldxf.encoding import decode_dxf_unicode
 
-from seatlook.model import FloatArray, Notch
-from seatlook.model.pattern import NotchKind
+from seatlook.io.pattern.layers import LINE_LAYERS, UNREAD, meaning
+from seatlook.model import FloatArray
 
-BOUNDARY, TURN, CURVE, NOTCH, MIRROR, GRAIN, INTERNAL, CUT_OUT, SEW = (
-    "1", "2", "3", "4", "6", "7", "8", "11", "14",
-)  # fmt: skip
-# Layers 84 to 87 repeat the outlines for quality checks and are not read. A notch on layer 4 is
-# a mark without a cut when it has no depth.
-NOTCH_LAYERS: dict[str, NotchKind] = {
-    NOTCH: "v", "80": "t", "81": "castle", "82": "check", "83": "u",
-}  # fmt: skip
+_LINES = ("LINE", "POLYLINE", "LWPOLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
+_TEXTS = ("TEXT", "MTEXT", "ATTDEF", "ATTRIB")
+_CHORD_MM = 0.001  # by which a chord may leave its curve
+_CUBICS = 16  # in an arc
+_DEEPEST = 16  # blocks in blocks
+
+
+class Mark(NamedTuple):
+    """A point or a text: on a layer, at a place (2,) [mm]; a point has a depth [mm]."""
+
+    layer: str
+    place: FloatArray
+    depth: float = 0.0
+    text: str = ""
+
+
+class Left(NamedTuple):
+    """What was not read, and why."""
+
+    kind: str
+    layer: str
+    reason: str
+
+
+@dataclass(slots=True)
+class Drawn:
+    """What is drawn of one piece, in millimetres.
+
+    Parameters
+    ----------
+    lines : layer -> polylines (k, 2); closed ones repeat their first point
+    left : how many entities were not read, by kind, layer and reason
+    """
+
+    lines: dict[str, list[FloatArray]] = field(default_factory=lambda: defaultdict(list))
+    points: list[Mark] = field(default_factory=list)
+    texts: list[Mark] = field(default_factory=list)
+    left: Counter[Left] = field(default_factory=Counter)
+
+
+def read_entities(layout: Any, scale: float, matrix: FloatArray | None = None) -> Drawn:
+    """Read the entities of a block.
+
+    Parameters
+    ----------
+    scale : millimetres per unit of the file
+    matrix : (4, 4) by which the block is placed; row vectors, None leaves it where it is
+    """
+    drawn = Drawn()
+    for entity, at, layer in _placed(layout, matrix, drawn.left, "0", ()):
+        kind = entity.dxftype()
+        if kind in _LINES:
+            _add_line(drawn, entity, layer, scale, at)
+        elif kind == "POINT":
+            (place, depth) = _moved_point(entity.dxf.location, scale, at)
+            drawn.points.append(Mark(layer, place, depth=depth))
+        elif kind in _TEXTS:
+            place, _ = _moved_point(entity.dxf.insert, scale, at)
+            drawn.texts.append(Mark(layer, place, text=_text(entity)))
+        else:
+            drawn.left[Left(kind, layer, "neither line, point nor text")] += 1
+    return drawn
 
 
 def read_texts(layout: Any) -> dict[str, str]:
     """Return the texts of the form ``Key: value``; keys without their case."""
     texts = {}
-    for entity in layout.query("TEXT"):
-        key, colon, value = decode_dxf_unicode(entity.dxf.text).partition(":")
-        if colon:
-            texts[key.strip().casefold()] = value.strip()
+    for entity in layout:
+        if entity.dxftype() in _TEXTS:
+            for row in _text(entity).splitlines():
+                key, colon, value = row.partition(":")
+                if colon:
+                    texts[key.strip().casefold()] = value.strip()
     return texts
 
 
-def read_polylines(block: Any, layer: str) -> list[FloatArray]:
-    """Return the lines of one layer, (k, 2) each in file units; closed ones repeat a point."""
-    lines = []
-    for entity in block.query(f'LINE POLYLINE LWPOLYLINE ARC SPLINE[layer=="{layer}"]'):
-        kind = entity.dxftype()
-        if kind == "LINE":
-            points = [entity.dxf.start, entity.dxf.end]
-        elif kind == "POLYLINE" and not entity.has_arc:
-            points = [v.dxf.location for v in entity.vertices]
-            points += points[:1] if entity.is_closed else []
-        else:
-            points = list(ezdxf.path.make_path(entity).flattening(0.001))
-        if len(points) > 1:
-            lines.append(np.array([(p.x, p.y) for p in points], dtype=np.float64))
-    return lines
+def has_line(layout: Any, layer: str) -> bool:
+    """Whether a block has a line on a layer."""
+    return any(e.dxftype() in _LINES and meaning(e.dxf.layer) == layer for e in layout)
 
 
-def read_points(block: Any, layer: str, scale: float) -> FloatArray:
-    """Return the points of one layer, (k, 2) [mm]."""
-    places = [e.dxf.location for e in block.query(f'POINT[layer=="{layer}"]')]
-    return scale * np.array([(p.x, p.y) for p in places]).reshape(-1, 2)
+def matrix_of(insert: Any) -> Iterator[FloatArray]:
+    """Return the (4, 4) matrices of an INSERT, one for every row and column of it."""
+    single = insert.multi_insert() if insert.mcount > 1 else (insert,)
+    for one in single:
+        yield np.array(list(one.matrix44()), dtype=np.float64).reshape(4, 4)
 
 
-def read_notches(block: Any, layer: str, scale: float) -> Iterator[Notch]:
-    """Return the notches of one layer; the height of the point is the depth of the cut."""
-    for entity in block.query(f'POINT[layer=="{layer}"]'):
-        x, y, depth = entity.dxf.location
-        kind: NotchKind = "point" if layer == NOTCH and depth == 0 else NOTCH_LAYERS[layer]
-        mm = 1e-3 * scale
-        yield Notch(position=np.array([mm * x, mm * y]), kind=kind, depth=mm * abs(depth))
+def _placed(
+    layout: Any, matrix: FloatArray | None, left: Counter[Left], layer: str, around: tuple[str, ...]
+) -> Iterator[tuple[Any, FloatArray | None, str]]:
+    """Return every entity with its matrix and layer; layer 0 of a block is that of its INSERT."""
+    for entity in layout:
+        own = meaning(entity.dxf.layer)
+        own = layer if own == "0" and around else own
+        if entity.dxftype() != "INSERT":
+            yield entity, matrix, own
+            continue
+        block, name = entity.block(), entity.dxf.get("name", "")
+        if block is None or name in around or len(around) >= _DEEPEST:
+            reason = "no such block" if block is None else "a block in itself"
+            left[Left("INSERT", own, reason)] += 1
+            continue
+        for inner in matrix_of(entity):
+            whole = inner if matrix is None else inner @ matrix
+            yield from _placed(block, whole, left, own, (*around, name))
 
 
-def read_line_names(block: Any, scale: float) -> list[tuple[str, FloatArray]]:
-    """Return the texts that name internal lines and where they stand [mm]."""
-    texts = block.query(f'TEXT[layer=="{INTERNAL}"]')
-    return [
-        (decode_dxf_unicode(t.dxf.text).strip(), scale * np.array([t.dxf.insert.x, t.dxf.insert.y]))
-        for t in texts
-    ]
+def _add_line(
+    drawn: Drawn, entity: Any, layer: str, scale: float, matrix: FloatArray | None
+) -> None:
+    if layer not in LINE_LAYERS:
+        reason = UNREAD.get(layer, "a layer without a meaning")
+        drawn.left[Left(entity.dxftype(), layer, reason)] += 1
+        if layer in UNREAD:
+            return
+    stretch = 1.0 if matrix is None else max(float(np.linalg.norm(matrix[:2, :2], 2)), 1e-9)
+    points = _points(entity, _CHORD_MM / max(scale * stretch, 1e-9))
+    if len(points) < 2:
+        drawn.left[Left(entity.dxftype(), layer, "a single point")] += 1
+        return
+    if matrix is not None:
+        points = points @ matrix[:3, :2] + matrix[3, :2]
+    drawn.lines[layer].append(scale * points[:, :2])
+
+
+def _points(entity: Any, chord: float) -> FloatArray:
+    """Return a line as (k, 3) in file units."""
+    kind = entity.dxftype()
+    if kind == "LINE":
+        points = [entity.dxf.start, entity.dxf.end]
+    elif kind == "POLYLINE" and not entity.has_arc and entity.dxf.extrusion.z > 0:
+        points = [v.dxf.location for v in entity.vertices]
+        points += points[:1] if entity.is_closed else []
+    elif kind in ("ARC", "CIRCLE", "ELLIPSE"):
+        # Of as few cubics as the library would take, a circle is 0.03 % too large.
+        points = list(ezdxf.path.make_path(entity, segments=_CUBICS).flattening(chord))
+    else:
+        points = list(ezdxf.path.make_path(entity).flattening(chord))
+    return np.array([(p.x, p.y, p.z) for p in points], dtype=np.float64).reshape(-1, 3)
+
+
+def _moved_point(place: Any, scale: float, matrix: FloatArray | None) -> tuple[FloatArray, float]:
+    """Return the place (2,) and the height, which is the depth of a notch, in millimetres."""
+    x, y, depth = place
+    point, depth = np.array([x, y], dtype=np.float64), abs(depth)
+    if matrix is not None:
+        point = point @ matrix[:2, :2] + matrix[3, :2]
+        depth *= float(np.sqrt(abs(np.linalg.det(matrix[:2, :2]))))
+    return scale * point, scale * depth
+
+
+def _text(entity: Any) -> str:
+    text = entity.plain_text() if entity.dxftype() == "MTEXT" else entity.dxf.text
+    return decode_dxf_unicode(text).strip()

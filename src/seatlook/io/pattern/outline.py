@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -11,82 +11,10 @@ import shapely.ops
 
 from seatlook.errors import InputError
 from seatlook.io.pattern.cuts import close_cuts
-from seatlook.model import FloatArray, IntArray, Notch
+from seatlook.io.pattern.join import MEETING_MM, Chain, without_repeats
+from seatlook.model import FloatArray, IntArray
 
-MEETING_MM = 0.1  # exporters write 2 to 4 decimals of a millimetre or an inch
 CORNER_DEG = 30.0
-
-
-@dataclass(frozen=True, slots=True)
-class Chain:
-    """Polylines joined end to end; a closed one does not repeat its first point."""
-
-    points: FloatArray
-    closed: bool
-    joints: FloatArray
-    notches: tuple[Notch, ...] = ()
-
-    @property
-    def area(self) -> float:
-        """Signed area [mm2], positive when counter-clockwise."""
-        x, y = self.points.T
-        return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-
-
-def join(lines: Sequence[FloatArray]) -> list[Chain]:
-    """Join polylines where exactly two ends meet.
-
-    Parameters
-    ----------
-    lines : (k, 2) each; a closed polyline repeats its first point
-
-    Examples
-    --------
-    >>> [chain] = join([np.array([[0.0, 0], [1, 0]]), np.array([[2.0, 2], [1, 0]])])
-    >>> chain.points.tolist(), chain.closed
-    ([[0.0, 0.0], [1.0, 0.0], [2.0, 2.0]], False)
-    """
-    partner = _partners(lines)
-    ends = range(2 * len(lines))
-    done: set[int] = set()
-    chains = []
-    # Open chains start at a free end; what is left over are loops.
-    for start in [*(e for e in ends if e not in partner), *ends]:
-        if start // 2 in done:
-            continue
-        route = [start]
-        done.add(start // 2)
-        while (following := partner.get(route[-1] ^ 1)) is not None and following // 2 not in done:
-            route.append(following)
-            done.add(following // 2)
-        parts = [lines[e // 2][:: -1 if e % 2 else 1] for e in route]
-        closed = partner.get(route[-1] ^ 1) == start
-        joints = np.array([p[0] for p in parts[0 if closed and len(parts) > 1 else 1 :]])
-        points = _without_repeats(np.vstack(parts), closed=closed)
-        chains.append(Chain(points, closed, joints.reshape(-1, 2)))
-    return chains
-
-
-def _partners(lines: Sequence[FloatArray]) -> dict[int, int]:
-    """Pair the ends that meet; end 2 i is the start of line i, end 2 i + 1 its last point."""
-    if not lines:
-        return {}
-    ends = np.array([p for line in lines for p in (line[0], line[-1])])
-    near = np.hypot(*(ends[:, None] - ends[None]).transpose(2, 0, 1)) < MEETING_MM
-    return {
-        e: int(next(o for o in np.flatnonzero(near[e]) if o != e))
-        for e in range(len(ends))
-        if near[e].sum() == 2
-    }
-
-
-def _without_repeats(points: FloatArray, *, closed: bool) -> FloatArray:
-    """Drop points that repeat the one before."""
-    keep = np.r_[True, np.hypot(*np.diff(points, axis=0).T) > MEETING_MM / 100]
-    points = points[keep]
-    while closed and len(points) > 1 and np.hypot(*(points[-1] - points[0])) < MEETING_MM:
-        points = points[:-1]
-    return points
 
 
 def unfold(lines: Sequence[FloatArray], axis: FloatArray) -> list[FloatArray]:
@@ -188,7 +116,7 @@ def trimmed(cut: Chain, seams: Sequence[Chain], *, key: str) -> Chain:
                 expected="a closed one, or both ends on the cut line",
             )
         polygon = max(parts, key=lambda p: p.area)
-    points = _without_repeats(np.array(polygon.exterior.coords)[:-1], closed=True)
+    points = without_repeats(np.array(polygon.exterior.coords)[:-1], closed=True)
     ends = np.vstack([s.points[[0, -1]] for s in seams] + [s.joints for s in seams] + [cut.joints])
     chain = Chain(points, True, ends)
     return chain if chain.area > 0 else Chain(_reversed(points), True, ends)

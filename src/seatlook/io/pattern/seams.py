@@ -15,7 +15,8 @@ import numpy as np
 
 from seatlook.errors import InputError, did_you_mean
 from seatlook.files import write_text
-from seatlook.io.pattern.dxf import SMALLEST_NOTCH, Units, read_dxf
+from seatlook.io.pattern.dxf import SMALLEST_NOTCH, read_dxf
+from seatlook.io.pattern.units import Units
 from seatlook.io.schema import (
     MM,
     Array,
@@ -76,13 +77,18 @@ def read_panels(
     size: str | None = None,
     units: Units | None = None,
     smallest_notch: float = SMALLEST_NOTCH,
+    encoding: str | None = None,
+    grain_deg: float | None = None,
 ) -> tuple[Panel, ...]:
     """Read the panels of a pattern file of any format in ``READERS``."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         expected = f"one of {', '.join(READERS)}"
         raise InputError.single("file", got=shown(path.suffix), expected=expected, file=path)
-    return reader(path, size=size, units=units, smallest_notch=smallest_notch)
+    return reader(
+        path, size=size, units=units, smallest_notch=smallest_notch, encoding=encoding,
+        grain_deg=grain_deg,
+    )  # fmt: skip
 
 
 def read_pattern(
@@ -92,6 +98,8 @@ def read_pattern(
     size: str | None = None,
     units: Units | None = None,
     smallest_notch: float = SMALLEST_NOTCH,
+    encoding: str | None = None,
+    grain_deg: float | None = None,
 ) -> Pattern:
     """Read a pattern and how it is sewn.
 
@@ -99,7 +107,7 @@ def read_pattern(
     ----------
     path : pattern file (AAMA DXF)
     seams : seams file; see docs/reference/scene.md
-    size, units, smallest_notch : as in ``read_dxf``
+    size, units, smallest_notch, encoding, grain_deg : as in ``read_dxf``
 
     Raises
     ------
@@ -108,7 +116,10 @@ def read_pattern(
         corner, a seam of an unknown edge, a length that is not the one stated. All problems of the
         seams file are reported together.
     """
-    panels = read_panels(path, size=size, units=units, smallest_notch=smallest_notch)
+    panels = read_panels(
+        path, size=size, units=units, smallest_notch=smallest_notch, encoding=encoding,
+        grain_deg=grain_deg,
+    )  # fmt: skip
     return read_seams(seams, panels)
 
 

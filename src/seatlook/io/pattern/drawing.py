@@ -1,0 +1,123 @@
+"""A DXF file opened: its characters, the names of its blocks, what the library says of it."""
+
+from __future__ import annotations
+
+import io
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import ezdxf.filemanagement
+from ezdxf.lldxf.encoding import decode_dxf_unicode
+from ezdxf.lldxf.validator import is_valid_block_name
+
+from seatlook.errors import InputError
+from seatlook.io.pattern.encoding import decode
+from seatlook.io.pattern.log import listening, loses_a_piece
+from seatlook.io.toml import read_file
+
+_BINARY = b"AutoCAD Binary DXF"
+_STAND_IN = "seatlook-block-"
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """An opened file.
+
+    Parameters
+    ----------
+    document : of the DXF library
+    names : stand-in -> name of a block that the library would refuse
+    header : the variables that the file itself holds; the library adds its own
+    notes : what is unusual
+    """
+
+    path: Path
+    document: Any
+    names: Mapping[str, str]
+    header: Mapping[str, str]
+    notes: tuple[str, ...]
+
+    def name_of(self, block: str) -> str:
+        """Return the name that the file gives to a block."""
+        return decode_dxf_unicode(self.names.get(block, block))
+
+
+def open_drawing(path: Path, encoding: str | None = None) -> Drawing:
+    """Open a DXF file of any encoding, whatever its blocks are called.
+
+    Raises
+    ------
+    InputError
+        When the file is no whole DXF file, or not written in ``encoding``.
+    """
+    content = read_file(path)
+    names: dict[str, str] = {}
+    header: dict[str, str] = {}
+    notes: list[str] = []
+    with listening() as messages:
+        try:
+            if content.startswith(_BINARY):
+                document = ezdxf.filemanagement.readfile(path)
+                header = {
+                    key: str(document.header.get(key)) for key in ("$INSUNITS", "$MEASUREMENT")
+                }
+            else:
+                text, guess = decode(content, path, encoding)
+                if guess is not None:
+                    notes.append(f"no code page is given: read as {guess}, a guess")
+                text = _with_safe_names(text, path, names, header)
+                document = ezdxf.filemanagement.read(io.StringIO(text))
+        except InputError:
+            raise
+        except Exception as error:  # on damaged files it raises whatever it stumbles over
+            raise refusal(path, error) from error
+    lost = [message for message in messages if loses_a_piece(message)]
+    if lost:
+        raise InputError.single("file", got=lost[0], expected="a whole DXF file", file=path)
+    return Drawing(path, document, names, header, (*notes, *dict.fromkeys(messages)))
+
+
+def refusal(path: Path, error: Exception) -> InputError:
+    """Return what to raise for whatever the library stumbled over."""
+    got = str(error).rstrip(".") or type(error).__name__
+    return InputError.single("file", got=got, expected="a whole DXF file", file=path)
+
+
+def _with_safe_names(text: str, path: Path, names: dict[str, str], header: dict[str, str]) -> str:
+    """Put stand-ins for block names that the library refuses, and take the header's values.
+
+    LH/RH is an everyday name of a piece; a drawing program would not allow it.
+    """
+    lines = text.split("\n")
+    stand_ins: dict[str, str] = {}
+    blocks: Counter[str] = Counter()
+    for k, entity, code in _tags(lines):
+        value = lines[k].strip()
+        if entity.startswith("$"):
+            header.setdefault(entity, value)
+        elif code in ("2", "3") and entity in ("BLOCK", "INSERT"):
+            if entity == "BLOCK" and code == "2":
+                blocks[value.casefold()] += 1
+            if value and not is_valid_block_name(value):
+                stand_in = stand_ins.setdefault(value, f"{_STAND_IN}{len(stand_ins)}")
+                names[stand_in] = value
+                lines[k] = stand_in
+    double = [name for name, count in blocks.items() if count > 1 and not name.startswith("*")]
+    if double:
+        got = f"two blocks called {decode_dxf_unicode(double[0])}"
+        raise InputError.single("blocks", got=got, expected="a name for each", file=path)
+    return "\n".join(lines)
+
+
+def _tags(lines: list[str]) -> Iterator[tuple[int, str, str]]:
+    """Return (line of the value, entity or variable, code) of blocks and header variables."""
+    entity = ""
+    for k in range(1, len(lines), 2):
+        code = lines[k - 1].strip()
+        if code in ("0", "9"):
+            entity = lines[k].strip()
+        elif code in ("2", "3", "70") and (entity in ("BLOCK", "INSERT") or entity[:1] == "$"):
+            yield k, entity, code

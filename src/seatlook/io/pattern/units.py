@@ -1,0 +1,64 @@
+"""How large a unit of a pattern file is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Literal, get_args
+
+from seatlook.errors import InputError
+
+Units = Literal["metric", "english", "mm", "cm", "m", "inch"]
+UNITS: tuple[str, ...] = get_args(Units)
+
+MM_PER_UNIT = {
+    "metric": 1.0, "mm": 1.0, "millimeter": 1.0, "millimeters": 1.0, "millimetres": 1.0,
+    "cm": 10.0, "centimeter": 10.0, "centimeters": 10.0, "centimetres": 10.0,
+    "m": 1000.0, "meter": 1000.0, "meters": 1000.0, "metres": 1000.0,
+    "english": 25.4, "imperial": 25.4, "inch": 25.4, "inches": 25.4, "in": 25.4,
+}  # fmt: skip
+_INSUNITS = {"1": 25.4, "2": 304.8, "4": 1.0, "5": 10.0, "6": 1000.0, "10": 914.4, "14": 100.0}
+_MEASUREMENT = {"0": 25.4, "1": 1.0}
+
+
+def millimetres_per_unit(
+    path: Path, text: str | None, units: Units | None, header: Mapping[str, str], notes: list[str]
+) -> float:
+    """Return millimetres per unit: by the UNITS text, ``units``, or the header, in this order.
+
+    The header comes last because drawing programs fill it with what they happen to be set to.
+
+    Raises
+    ------
+    InputError
+        When nothing says it, or the text is unknown.
+    """
+    stated = text or units
+    if stated is not None:
+        if stated.casefold() not in MM_PER_UNIT:
+            raise InputError.single(
+                "UNITS", got=repr(stated), expected="METRIC or ENGLISH", file=path
+            )
+        return MM_PER_UNIT[stated.casefold()]
+    for variable, sizes in (("$INSUNITS", _INSUNITS), ("$MEASUREMENT", _MEASUREMENT)):
+        size = sizes.get(header.get(variable, ""))
+        if size is not None:
+            notes.append(f"no UNITS text: a unit is {size:g} mm, by {variable}")
+            return size
+    raise InputError.single(
+        "UNITS", got="no such text", expected="METRIC or ENGLISH", file=path,
+        hint="say units = \"metric\" if the file is in millimetres",
+    )  # fmt: skip
+
+
+def other_unit(scale: float, size: float, header: Mapping[str, str]) -> str:
+    """Return in which unit a pattern would have the size [mm] of a cover, as a hint."""
+    named = _INSUNITS.get(header.get("$INSUNITS", ""))
+    others = (("cm", 10.0), ("inch", 25.4), ("mm", 1.0), ("m", 1000.0))
+    fitting = [
+        f"{size * mm / scale:.4g} mm if a unit is a {name}" if name != "inch" else
+        f"{size * mm / scale:.4g} mm if a unit is an inch"
+        for name, mm in sorted(others, key=lambda other: other[1] != named)
+        if mm != scale and 150 <= size * mm / scale <= 3000
+    ]  # fmt: skip
+    return fitting[0] if fitting else f"{10 * size:.4g} mm at ten times the scale"
