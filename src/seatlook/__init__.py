@@ -104,6 +104,9 @@ if TYPE_CHECKING:
     from seatlook.solver.solve import (
         solve as solve,
     )
+    from seatlook.sweeps.sweep import (
+        sweep as sweep,
+    )
     from seatlook.wrinkle.equations import (
         surface_strains as surface_strains,
     )
@@ -144,6 +147,7 @@ _PUBLIC: dict[str, str] = {
     "solve": "seatlook.solver.solve",
     "sun": "seatlook.model",
     "surface_strains": "seatlook.wrinkle.equations",
+    "sweep": "seatlook.sweeps.sweep",
     "wrinkle_indices": "seatlook.wrinkle.equations",
     "wrinkle_map": "seatlook.chain.assess",
     "write_result": "seatlook.io.export.result",
@@ -181,6 +185,7 @@ __all__ = [
     "solve",
     "sun",
     "surface_strains",
+    "sweep",
     "wrinkle_indices",
     "wrinkle_map",
     "write_result",

@@ -33,6 +33,16 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in files}
 
 
+def results(folder: Path) -> list[Path]:
+    """The JSON files of finished cells.
+
+    A glob takes hidden files as well: halves that are being written, or that a killed worker left
+    and the next run removes.
+    """
+    files = folder.glob("[!.]*.json")
+    return [path for path in files if not path.name.endswith(".failed.json")]
+
+
 @contextmanager
 def local_cluster() -> Iterator[Any]:
     """Two Dask worker processes here; closing them takes long where the machine is loaded."""
@@ -93,7 +103,7 @@ def kill_and_run_again(folder: Path, *, before: Callable[[Path], object]) -> tup
     process.communicate()
     # Workers end by themselves when the process that started them is gone.
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in workers))
-    done = {p: p.stat().st_mtime_ns for p in cells.glob("*.json")}
+    done = {p: p.stat().st_mtime_ns for p in results(cells)}
     again = start_sweep(folder, "--quiet")
     said, wrong = again.communicate()
     assert again.returncode == 0, wrong

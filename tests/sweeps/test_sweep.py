@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import json
 import os
 import random
@@ -15,17 +16,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import seatlook
 from seatlook.cli import run
 from seatlook.errors import InputError
 from seatlook.io.sweep import read_sweep
-from seatlook.sweeps import cell
 from seatlook.sweeps.cell import Cell, plan, run_cell
-from seatlook.sweeps.run import run_cluster, run_local, shard, unfinished
+from seatlook.sweeps.run import run_cluster, run_local, shard_of, unfinished
+from seatlook.sweeps.sweep import list_cells
 from support.sweep_runs import (
     children,
     contents,
     kill_and_run_again,
     local_cluster,
+    results,
     seeds,
     start_sweep,
     wait_for,
@@ -50,7 +53,7 @@ def test_one_and_two_workers_leave_the_same_bytes(four, tmp_path):
 
 def test_shards_make_up_the_whole_and_finished_cells_are_left_alone(four, tmp_path):
     cells, expected = four
-    parts = [shard(cells, f"{i}/3") for i in (1, 2, 3)]
+    parts = [shard_of(cells, f"{i}/3") for i in (1, 2, 3)]
     assert sorted(c.name for part in parts for c in part) == sorted(c.name for c in cells)
     list(run_local(parts[0][:1], tmp_path))
     assert {c.name for c in unfinished(cells, tmp_path)} == {c.name for c in cells[1:]}
@@ -61,7 +64,37 @@ def test_shards_make_up_the_whole_and_finished_cells_are_left_alone(four, tmp_pa
 @pytest.mark.parametrize("text", ["0/2", "3/2", "2", "a/b", ""])
 def test_a_shard_is_i_of_n(text):
     with pytest.raises(InputError, match="expected i/n, such as 1/4"):
-        shard((), text)
+        shard_of((), text)
+
+
+def test_a_sweep_in_python_gives_what_the_files_hold(four, tmp_path):
+    cells, expected = four
+    seeds(tmp_path, 4)
+    (tmp_path / "out").mkdir()
+    for name in [n for n in expected if n.startswith(tuple(c.name for c in cells[:3]))]:
+        (tmp_path / "out" / "cells").mkdir(exist_ok=True)
+        (tmp_path / "out" / "cells" / name).write_bytes(expected[name])
+    listed = list_cells(tmp_path / "sweep.toml", tmp_path / "out", shard="1/4")
+    assert [row[1] for row in listed.rows] == ["done"] * 3 + ["of another shard"]
+    assert [row[2] for row in listed.rows] == [f"mesh.seed={k}" for k in range(4)]
+    steps = []
+    outcome = seatlook.sweep(
+        tmp_path / "sweep.toml", tmp_path / "out", progress=lambda name, **at: steps.append(at)
+    )
+    assert (outcome.done_before, outcome.done, outcome.failed) == (3, 1, ())
+    assert [at["step"] for at in steps] == [0, 1]
+    assert [row["cell"] for row in outcome.rows] == [cell.name for cell in cells]
+    assert contents(tmp_path / "out" / "cells") == expected
+    heads, *lines = csv.reader((tmp_path / "out" / "sweep.csv").read_text().splitlines())
+    means = [float(line[heads.index("w2_mean")]) for line in lines]
+    assert means == [row["w2_mean"] for row in outcome.rows]
+    assert (outcome.probability, outcome.notices) == ((), ())
+
+
+def test_workers_and_a_scheduler_exclude_each_other(tmp_path):
+    seeds(tmp_path, 1)
+    with pytest.raises(InputError, match="workers: got 2, expected none with a scheduler"):
+        seatlook.sweep(tmp_path / "sweep.toml", tmp_path, workers=2, scheduler="tcp://x:1")
 
 
 def test_the_name_stands_for_the_content(four, tmp_path):
@@ -76,7 +109,7 @@ def test_a_failed_cell_is_listed_and_does_not_stop_the_others(tmp_path, capsys, 
     (good,) = seeds(tmp_path, 1)
     # As if the scene had been moved between planning and running.
     gone = replace(good, name="gone", spec=good.spec.replace("scene.toml", "moved.toml"))
-    monkeypatch.setattr(cell, "plan", lambda sweep: (gone, good))
+    monkeypatch.setattr("seatlook.sweeps.sweep.plan", lambda sweep: (gone, good))
     out = tmp_path / "out"
     code = run(["sweep", str(tmp_path / "sweep.toml"), "--out", str(out), "--quiet"])
     printed = capsys.readouterr()
@@ -115,7 +148,9 @@ def test_killed_at_any_moment_and_run_again_nothing_is_lost_or_doubled(four, tmp
 
     def working(folder: Path) -> bool:
         time.sleep(0.2 * random.random())
-        return bool(list(folder.glob("*.npy")))
+        # As if a worker had been killed while it wrote the last of them.
+        (folder / f".{cells[-1].name}-half.json").write_text("{")
+        return bool(list(folder.glob("[!.]*.npy")))
 
     _, printed = kill_and_run_again(tmp_path, before=working)
     assert contents(tmp_path / "out" / "cells") == expected
@@ -128,7 +163,7 @@ def test_an_interrupted_sweep_ends_at_once_and_says_how_to_go_on(four, tmp_path,
     seeds(tmp_path, 40)
     process = start_sweep(tmp_path, "--workers", "2")
     folder = tmp_path / "out" / "cells"
-    wait_for(lambda: list(folder.glob("*.json")))
+    wait_for(lambda: results(folder))
     workers = children(process.pid)
     # Python drops an interrupt that meets a finaliser; a person presses the keys again.
     for _ in range(6):
@@ -139,7 +174,7 @@ def test_an_interrupted_sweep_ends_at_once_and_says_how_to_go_on(four, tmp_path,
     assert process.returncode == 130
     assert printed.endswith("the same command again goes on where it was: what is done is kept\n")
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in workers))
-    assert 0 < len(list(folder.glob("*.json"))) < 30
+    assert 0 < len(results(folder)) < 30
     assert not list(folder.glob("*.failed.json"))
     done = contents(folder)
     assert all(done[name] == body for name, body in expected.items() if name in done)

@@ -18,6 +18,7 @@ from support.sweep_runs import (
     kill_and_run_again,
     local_cluster,
     resident,
+    results,
     seeds,
 )
 
@@ -76,7 +77,7 @@ def test_killed_at_any_moment_and_run_again_nothing_is_lost_or_doubled(whole, tm
     enough = random.randint(1, COUNT - 4)
 
     def far(folder: Path) -> bool:
-        return len(list(folder.glob("*.json"))) >= enough
+        return len(results(folder)) >= enough
 
     done, printed = kill_and_run_again(tmp_path, before=far)
     print(f"killed after {len(done)} of {COUNT} cells")

@@ -41,6 +41,24 @@ class Cell:
         """What the cell is of: variant, changes, values of the irregular inputs."""
         return {k: v for k, v in json.loads(self.spec).items() if k != "scene"}
 
+    @property
+    def group(self) -> str:
+        """Variant and changes in words: what irregular covers have in common."""
+        return " ".join(self._words) or "the scene"
+
+    @property
+    def label(self) -> str:
+        """What the cell is of in words: variant, changes, values of the irregular inputs."""
+        settings = self.settings
+        pairs = zip(settings["inputs"], settings["values"] or (), strict=False)
+        values = [f"{tolerance['name']}={value:.3g}" for tolerance, value in pairs]
+        return " ".join([*self._words, *values]) or "the scene"
+
+    @property
+    def _words(self) -> list[str]:
+        settings = self.settings
+        return [word for word in (settings["variant"], *settings["set"]) if word]
+
 
 def plan(sweep: Sweep) -> tuple[Cell, ...]:
     """List all cells of a sweep, every scene read and checked.

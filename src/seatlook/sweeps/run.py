@@ -23,7 +23,7 @@ _ATTEMPTS = 2  # at a cell whose worker dies, before it counts as failed
 _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
-def shard(cells: Sequence[Cell], text: str) -> tuple[Cell, ...]:
+def shard_of(cells: Sequence[Cell], text: str) -> tuple[Cell, ...]:
     """Return part ``i/n`` (i from 1) of the cells: every n-th.
 
     Raises
@@ -33,12 +33,12 @@ def shard(cells: Sequence[Cell], text: str) -> tuple[Cell, ...]:
 
     Examples
     --------
-    >>> [c.name for c in shard([Cell(name=k, spec="{}") for k in "abcde"], "2/2")]
+    >>> [c.name for c in shard_of([Cell(name=k, spec="{}") for k in "abcde"], "2/2")]
     ['b', 'd']
     """
     i, _, n = text.partition("/")
     if not (i.isdigit() and n.isdigit() and 1 <= int(i) <= int(n)):
-        raise InputError.single("--shard", got=repr(text), expected="i/n, such as 1/4")
+        raise InputError.single("shard", got=repr(text), expected="i/n, such as 1/4")
     return tuple(cells[int(i) - 1 :: int(n)])
 
 
@@ -56,7 +56,7 @@ def run_local(
     process, however it ends. A cell whose worker dies is tried once more in a worker of its own.
     """
     if workers < 1:
-        raise InputError.single("--workers", got=workers, expected="1 or more")
+        raise InputError.single("workers", got=workers, expected="1 or more")
     folder.mkdir(parents=True, exist_ok=True)
     left, suspects, tries = list(cells), list[Cell](), Counter[str]()
     while batch := suspects[:1] or left:
@@ -102,7 +102,7 @@ def run_cluster(
         from distributed import as_completed as as_dask_completed
     except ImportError as error:
         raise InputError.single(
-            "--scheduler", got="no distributed", expected='pip install "seatlook[cluster]"'
+            "scheduler", got="no distributed", expected='pip install "seatlook[cluster]"'
         ) from error
     folder.mkdir(parents=True, exist_ok=True)
     by_name = {cell.name: cell for cell in cells}
@@ -110,7 +110,7 @@ def run_cluster(
         client = Client(scheduler, timeout="20s")
     except (OSError, ValueError) as error:
         raise InputError.single(
-            "--scheduler", got=scheduler, expected="the address of a Dask scheduler",
+            "scheduler", got=scheduler, expected="the address of a Dask scheduler",
             hint="start one with: dask scheduler",
         ) from error  # fmt: skip
     with client:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,6 +46,24 @@ class Cause:
     def matters(self) -> bool:
         """Whether one of the correlations is above the noise."""
         return self.strength > self.noise
+
+    @property
+    def sentence(self) -> str:
+        """How strong it is, for the first of several causes."""
+        rank = "matters most" if self.matters else "is strongest, but not above the noise"
+        return (
+            f"{self.input} {rank} "
+            f"(rank correlation {self.strength:.2f} in size, noise {self.noise:.2f})"
+        )
+
+
+def groups(cells: Sequence[Cell]) -> dict[str, list[Cell]]:
+    """Cells with irregular inputs, by what else they are of."""
+    grouped = defaultdict(list)
+    for cell in cells:
+        if cell.settings["values"] is not None:
+            grouped[cell.group].append(cell)
+    return dict(grouped)
 
 
 def rows(cells: Sequence[Cell], folder: Path) -> list[dict[str, Any]]:
