@@ -50,6 +50,9 @@ if TYPE_CHECKING:
     from seatlook.io.scene.read import (
         load_scene as load_scene,
     )
+    from seatlook.jury.plan import (
+        plan_jury as plan_jury,
+    )
     from seatlook.model import (
         Camera as Camera,
     )
@@ -88,6 +91,12 @@ if TYPE_CHECKING:
     )
     from seatlook.pbr.shading.studio import (
         render as render,
+    )
+    from seatlook.report.jury_export import (
+        export_jury as export_jury,
+    )
+    from seatlook.report.jury_fit import (
+        fit_jury as fit_jury,
     )
     from seatlook.seat import (
         Seat as Seat,
@@ -134,12 +143,15 @@ _PUBLIC: dict[str, str] = {
     "compare": "seatlook.comparison.compare",
     "demo": "seatlook.seats.files:write_demo",
     "evaluate": "seatlook.seat",
+    "export_jury": "seatlook.report.jury_export",
+    "fit_jury": "seatlook.report.jury_fit",
     "flatten": "seatlook.flattening.files:flatten_surface",
+    "framed_view": "seatlook.model",
     "init": "seatlook.chain.start",
     "load_scene": "seatlook.io.scene.read",
-    "framed_view": "seatlook.model",
     "named_view": "seatlook.model",
     "open": "seatlook.seat",
+    "plan_jury": "seatlook.jury.plan",
     "read_material": "seatlook.io.material",
     "read_result": "seatlook.io.export.result",
     "render": "seatlook.pbr.shading.studio",
@@ -172,12 +184,15 @@ __all__ = [
     "compare",
     "demo",
     "evaluate",
+    "export_jury",
+    "fit_jury",
     "flatten",
     "framed_view",
     "init",
     "load_scene",
     "named_view",
     "open",
+    "plan_jury",
     "read_material",
     "read_result",
     "render",

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import App, Parameter
 
 from seatlook.cli._options import Names, solved_seat
 from seatlook.cli._output import Json, progress, say, show_json, table
-from seatlook.errors import InputError
-
-if TYPE_CHECKING:
-    from seatlook.model import Scene
-    from seatlook.visibility.view import View
 
 _HELP = """Ask people: plan a jury, make its page, fit its votes.
 
@@ -93,24 +87,23 @@ def export(
     ties
         Allow "equal" as an answer.
     """
-    from seatlook.jury.questionnaire import trials
-    from seatlook.jury.stimuli import draw_stimuli
     from seatlook.pbr import offscreen_backend
-    from seatlook.report.jury_page import KEY, PAGE, write_jury
+    from seatlook.report.jury_export import export_jury
 
     offscreen_backend()
     with progress() as show:
-        covers = _covers(scenes, texture, rig, view, width_px)
-        stimuli = draw_stimuli(covers, seed=seed, progress=show)
-    say(*stimuli.notices)
-    questionnaire = write_jury(stimuli, out, title=title, judges=judges, seed=seed, ties=ties)
-    say(f"page for the judges: {out / PAGE / 'index.html'}", f"key, not for them: {out / KEY}")
+        result = export_jury(
+            [solved_seat(path) for path in scenes], out, textures=texture, rigs=rig, camera=view,
+            width=width_px, judges=judges, seed=seed, title=title, ties=ties, progress=show,
+        )  # fmt: skip
+    say(*result.notices)
+    say(f"page for the judges: {result.page}", f"key, not for them: {result.key}")
     rows = [
-        ("stimuli", len(stimuli.cells)),
-        ("catch_pairs", len(stimuli.catches)),
-        ("comparisons_per_judge", len(trials(questionnaire, seed))),
+        ("stimuli", len(result.stimuli.cells)),
+        ("catch_pairs", len(result.stimuli.catches)),
+        ("comparisons_per_judge", result.comparisons),
         ("sessions", judges),
-        ("digest", questionnaire.digest),
+        ("digest", result.questionnaire.digest),
     ]
     table(("what", "value"), rows, json=json)
 
@@ -137,47 +130,23 @@ def fit(
     seed
         Of the judges drawn again for the intervals.
     """
-    from seatlook.jury.fit import fit_votes
-    from seatlook.report.jury_page import read_jury, read_votes
+    from seatlook.report.jury_fit import fit_jury
     from seatlook.report.sections.jury_tables import calibration_rows, fit_tables, fit_values
 
-    questionnaire, pictures = read_jury(key)
-    ballots = read_votes(votes, questionnaire)
-    for problem in ballots.problems:
-        say(str(problem))
-    questions = [q for q in questionnaire.questions if any(v.question == q for v in ballots.votes)]
-    if not questions:
-        raise InputError.single("votes", got="none that counts", expected="at least one")
-    results = {question: fit_votes(ballots, question, seed=seed) for question in questions}
-    labels = {code: entry["label"] for code, entry in pictures.items()}
-    calibrated, why_not = calibration_rows(ballots, pictures)
+    answer = fit_jury(key, votes, seed=seed)
+    say(*map(str, answer.ballots.problems))
+    figures = calibration_rows(answer.calibration) if answer.calibration else {}
     if json:
-        values = {q: fit_values(result, labels) for q, result in results.items()}
-        show_json({"questions": values, "calibration": calibrated, "not_calibrated": why_not})
+        questions = {q: fit_values(result, answer.labels) for q, result in answer.results.items()}
+        reason = answer.not_calibrated
+        show_json({"questions": questions, "calibration": figures, "not_calibrated": reason})
         return
-    for result in results.values():
-        for heads, rows in fit_tables(result, labels):
+    for result in answer.results.values():
+        for heads, rows in fit_tables(result, answer.labels):
             table(heads, rows, json=False)
             table((), (), json=False)
-    if calibrated:
-        table(("what", "value"), list(calibrated.items()), json=False)
-    say(*dict.fromkeys(note for r in results.values() for note in r.notices))
-    if why_not:
-        say(f"not calibrated: {why_not}")
-
-
-def _covers(
-    scenes: Sequence[Path],
-    textures: tuple[str, ...],
-    rigs: tuple[str, ...],
-    view: str | None,
-    width: int,
-) -> Iterator[tuple[str, Scene, View]]:
-    """Open one scene after the other with its result; scenes of one name differ by their folder."""
-    from seatlook.jury.stimuli import jury_view
-
-    for path in scenes:
-        seat, folder = solved_seat(path), path.parent.name
-        scene = seat.narrowed(textures, rigs)
-        name = f"{scene.name} ({folder})" if len(scenes) > 1 and folder else scene.name
-        yield name, scene, jury_view(seat.solution, seat.camera(view), width=width)
+    if figures:
+        table(("what", "value"), list(figures.items()), json=False)
+    say(*answer.notices)
+    if answer.not_calibrated:
+        say(f"not calibrated: {answer.not_calibrated}")

@@ -206,7 +206,7 @@ def compare(
         raise InputError.single("scenes", got=len(scenes), expected="two or more")
     words = tuple(changes)
     given = scenes.values() if isinstance(scenes, Mapping) else scenes
-    cases = [_case(variant, words) for variant in given]
+    cases = [case_of(variant, words) for variant in given]
     names = tuple(scenes) if isinstance(scenes, Mapping) else variant_names(cases)
     folders, variants = file_names(names), dict(zip(names, cases, strict=True))
     for name, path in results.items():
@@ -221,7 +221,8 @@ def compare(
     return Comparison(variants=MappingProxyType(variants), camera=first.camera(None))
 
 
-def _case(variant: Variant, changes: tuple[str, ...]) -> Case:
+def case_of(variant: Variant, changes: tuple[str, ...] = ()) -> Case:
+    """The case of a scene, of its file read with some changes, or as it is given."""
     if isinstance(variant, Case):
         return variant
     return Case(variant if isinstance(variant, Scene) else io.load_scene(variant, changes=changes))

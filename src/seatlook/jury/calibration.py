@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
@@ -109,6 +110,36 @@ def calibrate(
         geometries=geometries,
         votes=len(gain),
     )
+
+
+def calibrate_by_key(
+    ballots: Ballots, key: Mapping[str, Mapping[str, Any]], *, seed: int = 0
+) -> Calibration:
+    """Calibrate with covers and measures of the organiser's key, which the page does not hold.
+
+    Parameters
+    ----------
+    key : code name of a picture -> its geometry and measures
+
+    Raises
+    ------
+    InputError
+        A picture without them in the key; and see :func:`calibrate`.
+    """
+    questionnaire = ballots.questionnaire
+    names = ("geometry", *MEASURES)
+    problems = [
+        Problem(key=f"key {s.name}", got=f"no {name}", expected="cover and scores of every picture")
+        for s in questionnaire.stimuli
+        for name in names
+        if name not in key.get(s.name, {})
+    ]
+    if problems:
+        raise InputError(problems)
+    stimuli = tuple(replace(s, geometry=key[s.name]["geometry"]) for s in questionnaire.stimuli)
+    complete = replace(ballots, questionnaire=replace(questionnaire, stimuli=stimuli))
+    measures = {s.name: Measures(**{name: key[s.name][name] for name in MEASURES}) for s in stimuli}
+    return calibrate(complete, measures, seed=seed)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

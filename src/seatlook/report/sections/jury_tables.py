@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Any
 
-from seatlook.errors import InputError
-from seatlook.jury.calibration import MEASURES, calibrate
+from seatlook.jury.calibration import Calibration
 from seatlook.jury.fit import Estimate, Fit, JuryResult
-from seatlook.jury.votes import Ballots
-from seatlook.visibility.cross_check import Measures
 
 Labels = Mapping[str, str]
 Part = tuple[tuple[str, ...], list[tuple[Any, ...]]]
@@ -59,23 +56,8 @@ def fit_values(result: JuryResult, labels: Labels) -> dict[str, Any]:
     }
 
 
-def calibration_rows(
-    ballots: Ballots, key: Mapping[str, Mapping[str, Any]]
-) -> tuple[dict[str, Any], str]:
-    """Calibrate the scores on the votes; return figures, or none and the reason."""
-    questionnaire = ballots.questionnaire
-    stimuli = tuple(replace(s, geometry=key[s.name]["geometry"]) for s in questionnaire.stimuli)
-    try:
-        measures = {
-            s.name: Measures(**{name: key[s.name][name] for name in MEASURES}) for s in stimuli
-        }
-        calibration = calibrate(
-            replace(ballots, questionnaire=replace(questionnaire, stimuli=stimuli)), measures
-        )
-    except KeyError as error:
-        return {}, f"no {error} in the key"
-    except InputError as error:
-        return {}, str(error)
+def calibration_rows(calibration: Calibration) -> dict[str, Any]:
+    """Return the figures of a calibration by their names."""
     mean, low, high = calibration.advantage
     figures: dict[str, Any] = {
         f"held_out_log_likelihood_{name}": value for name, value in calibration.held_out.items()
@@ -90,7 +72,7 @@ def calibration_rows(
         "covers": len(calibration.geometries),
         "votes": calibration.votes,
         "verdict": calibration.verdict,
-    }, ""
+    }
 
 
 def _judges(result: JuryResult) -> Iterator[Part]:
