@@ -102,6 +102,9 @@ if TYPE_CHECKING:
         Seat as Seat,
     )
     from seatlook.seat import (
+        compare_into as compare_into,
+    )
+    from seatlook.seat import (
         evaluate as evaluate,
     )
     from seatlook.seat import (
@@ -141,6 +144,7 @@ _PUBLIC: dict[str, str] = {
     "assess": "seatlook.chain.assess",
     "bulb": "seatlook.model",
     "compare": "seatlook.comparison.compare",
+    "compare_into": "seatlook.seat",
     "demo": "seatlook.seats.files:write_demo",
     "evaluate": "seatlook.seat",
     "export_jury": "seatlook.report.jury_export",
@@ -182,6 +186,7 @@ __all__ = [
     "assess",
     "bulb",
     "compare",
+    "compare_into",
     "demo",
     "evaluate",
     "export_jury",

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from seatlook import io
 from seatlook.assembly import with_mesh
@@ -13,11 +14,13 @@ from seatlook.chain.evaluation import LEFT, Evaluation, evaluate_case
 from seatlook.chain.film import film
 from seatlook.chain.precision import Precise, solve_to
 from seatlook.chain.run_folder import run_folder
-from seatlook.comparison.compare import Comparison, Variant, compare
+from seatlook.comparison.compare import Comparison, Variant, compare, named_cases
+from seatlook.comparison.visibility import VariantScores, score_variants
 from seatlook.errors import InputError
 from seatlook.model import Camera, Rig, Scene
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES
+from seatlook.report.comparison_page import write_comparison
 from seatlook.report.evaluation_page import write_report
 from seatlook.report.page.types import Check, ScoreSection
 from seatlook.report.sections.score import visibility
@@ -43,6 +46,25 @@ class Outcome:
             if not v.kept
         )
         return (*figures, *missed(self.score.checks if self.score else ()))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparisonOutcome:
+    """What a comparison left: the page, the variants, and their scores if there are any."""
+
+    page: Path
+    comparison: Comparison
+    scores: VariantScores | None
+
+    @property
+    def unconverged(self) -> tuple[str, ...]:
+        """A sentence for every variant that is not converged."""
+        solutions = {name: case.solution for name, case in self.comparison.variants.items()}
+        return tuple(
+            f"{name}: not converged: {solution.reason}"
+            for name, solution in solutions.items()
+            if solution.status != "converged"
+        )
 
 
 def missed(checks: Iterable[Check]) -> tuple[str, ...]:
@@ -185,3 +207,41 @@ def _read(path: Path, changes: Iterable[str]) -> Scene:
 def evaluate(scene: Path | str | Scene, out: Path | str, *, progress: Progress = silent) -> Outcome:
     """Evaluate a scene into a folder, see :meth:`Seat.evaluate`."""
     return open(scene).evaluate(out, progress=progress)
+
+
+def compare_into(
+    scenes: Sequence[Variant] | Mapping[str, Variant],
+    out: Path | str,
+    *,
+    changes: Iterable[str] = (),
+    results: Mapping[str, Path | str] = MappingProxyType({}),
+    score: bool = True,
+    single_file: bool = False,
+    progress: Progress = silent,
+) -> ComparisonOutcome:
+    """Compare some scenes in a folder: results, pictures and maps, and the page last.
+
+    Parameters
+    ----------
+    scenes, changes, results : see :func:`seatlook.compare`; results are kept in the folder, so
+        that a second run only draws
+    score : score how visible the wrinkles of every variant are
+    single_file : put the images into the page
+
+    Raises
+    ------
+    InputError
+        Before the first solve: what ``check`` finds in any of the scenes, a folder in use.
+    NoOffscreenContext, SolverError, RenderError
+    """
+    folder = Path(out)
+    variants = named_cases(scenes, changes)
+    for case in variants.values():
+        case.check()
+    with run_folder(folder, page=True):
+        comparison = compare(variants, results=results, keep=folder, progress=progress)
+        scores = score_variants(comparison, progress) if score else None
+        page = write_comparison(
+            comparison, folder, scores=scores, single_file=single_file, progress=progress
+        )
+    return ComparisonOutcome(page=page, comparison=comparison, scores=scores)

@@ -10,6 +10,7 @@ from types import MappingProxyType
 
 import pytest
 
+import seatlook
 from seatlook import compare, io
 from seatlook.chain import case as module
 from seatlook.chain.case import Case
@@ -18,6 +19,7 @@ from seatlook.comparison.compare import Comparison, variant_names
 from seatlook.comparison.visibility import VariantScores, score_variants
 from seatlook.comparison.widgets import sliders
 from seatlook.errors import InputError
+from seatlook.model.scene import Limit
 from seatlook.report.comparison_page import write_comparison
 from seatlook.solver import solve
 from seatlook.wrinkle import INDICES
@@ -197,6 +199,32 @@ def test_variants_are_told_apart(folder):
     assert names(scene, replace(scene, name="b")) == ("two panels", "b")
     assert names(scene, replace(scene, path=Path("x/other.toml"))) == ("scene", "other")
     assert names(scene, scene) == ("1 two panels", "2 two panels")
+
+
+def test_a_comparison_in_a_folder_is_one_call(comparison, tmp_path):
+    scenes = {name: case.scene for name, case in comparison.variants.items()}
+    paths = {name: tmp_path / f"{k}.npz" for k, name in enumerate(scenes)}
+    result = comparison.first.solution
+    io.write_result(result, paths["pvc"])
+    stuck = replace(result, status="not converged", reason="too hard")
+    io.write_result(stuck, paths["suede cover"])
+    outcome = seatlook.compare_into(scenes, tmp_path / "out", results=paths, score=False)
+    assert outcome.page == tmp_path / "out" / "index.html"
+    assert outcome.scores is None
+    assert len(list((tmp_path / "out" / "variants").rglob("*.png"))) == 2 * 2 * 2
+    assert outcome.unconverged == ("suede cover: not converged: too hard",)
+
+
+def test_a_comparison_is_refused_before_its_first_solve(comparison, tmp_path):
+    scenes = {name: case.scene for name, case in comparison.variants.items()}
+    unknown = Limit(zone="nowhere", measure="w2_mean", maximum=1.0)
+    scenes["suede cover"] = replace(scenes["suede cover"], limits=(unknown,))
+    with pytest.raises(InputError, match="nowhere"):
+        seatlook.compare_into(scenes, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(InputError, match="results: got 'none', expected one of pvc, suede cover"):
+        seatlook.compare_into(comparison.variants, tmp_path / "out", results={"none": "a.npz"})
+    assert not (tmp_path / "out").exists()
 
 
 def test_compare_on_the_command_line(folder, tmp_path, capsys):

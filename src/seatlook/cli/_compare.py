@@ -37,12 +37,9 @@ def compare(
     result
         NAME=RESULT.npz: take this result of the scene called NAME; may be given more than once.
     """
-    from seatlook.chain.run_folder import run_folder
-    from seatlook.comparison.compare import compare as run_compare
     from seatlook.comparison.compare import variant_names
-    from seatlook.comparison.visibility import score_variants
     from seatlook.pbr import offscreen_backend
-    from seatlook.report.comparison_page import write_comparison
+    from seatlook.seat import compare_into
 
     if len(scenes) < 2:
         raise InputError.single("scenes", got=len(scenes), expected="two or more")
@@ -59,23 +56,16 @@ def compare(
         table(("variant", "texture", "rig"), cells, json=json)
         return 0
     offscreen_backend()
-    for seat in seats:
-        seat.check()
-    variants = dict(zip(names, seats, strict=True))
-    with run_folder(out, page=True), progress() as show:
-        comparison = run_compare(variants, results=_results(result, names), keep=out, progress=show)
-        scores = score_variants(comparison, show) if score else None
-        page = write_comparison(
-            comparison, out, scores=scores, single_file=single_file, progress=show
-        )
-    differences = comparison.table()
+    with progress() as show:
+        outcome = compare_into(
+            dict(zip(names, seats, strict=True)), out, results=_results(result, names),
+            score=score, single_file=single_file, progress=show,
+        )  # fmt: skip
+    differences = outcome.comparison.table()
     table(differences.heads, differences.rows, json=json)
-    note(f"gallery: {page}")
-    bad = {
-        n: c.solution for n, c in comparison.variants.items() if c.solution.status != "converged"
-    }
-    say(*(f"{name}: not converged: {solution.reason}" for name, solution in bad.items()))
-    return 3 if bad else 0
+    note(f"gallery: {outcome.page}")
+    say(*outcome.unconverged)
+    return 3 if outcome.unconverged else 0
 
 
 def _results(words: tuple[str, ...], names: tuple[str, ...]) -> MappingProxyType[str, Path]:

@@ -202,16 +202,11 @@ def compare(
         Fewer than two scenes, or a result of an unknown variant.
     SolverError, RenderError
     """
-    if len(scenes) < 2:
-        raise InputError.single("scenes", got=len(scenes), expected="two or more")
-    words = tuple(changes)
-    given = scenes.values() if isinstance(scenes, Mapping) else scenes
-    cases = [case_of(variant, words) for variant in given]
-    names = tuple(scenes) if isinstance(scenes, Mapping) else variant_names(cases)
-    folders, variants = file_names(names), dict(zip(names, cases, strict=True))
+    variants = named_cases(scenes, changes)
+    folders = file_names(variants)
     for name, path in results.items():
         if name not in variants:
-            raise _unknown("results", name, names)
+            raise _unknown("results", name, tuple(variants))
         variants[name] = Case(variants[name].scene, solution=io.read_result(path))
     for name, case in variants.items():
         progress("solve", variant=name)
@@ -219,6 +214,25 @@ def compare(
         case.solve(None if name in results else kept, resume=True)
     first = next(iter(variants.values()))
     return Comparison(variants=MappingProxyType(variants), camera=first.camera(None))
+
+
+def named_cases(
+    scenes: Sequence[Variant] | Mapping[str, Variant], changes: Iterable[str] = ()
+) -> dict[str, Case]:
+    """Two or more variants as cases by names, their own where none are given.
+
+    Raises
+    ------
+    InputError
+        Fewer than two, or a scene that cannot be read.
+    """
+    if len(scenes) < 2:
+        raise InputError.single("scenes", got=len(scenes), expected="two or more")
+    words = tuple(changes)
+    if isinstance(scenes, Mapping):
+        return {name: case_of(variant, words) for name, variant in scenes.items()}
+    cases = [case_of(variant, words) for variant in scenes]
+    return dict(zip(variant_names(cases), cases, strict=True))
 
 
 def case_of(variant: Variant, changes: tuple[str, ...] = ()) -> Case:
