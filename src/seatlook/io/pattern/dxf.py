@@ -157,7 +157,7 @@ def _pieces(
     pieces: dict[str, Drawn] = {}
     uses = find_uses(drawing, titles, size)
     for name, use in zip(unique_names(uses, report.notes), uses, strict=True):
-        drawn = read_entities(use.block, report.mm_per_unit, use.matrix)
+        drawn = read_entities(use.block, report.mm_per_unit, use.matrix, use.block.name)
         parts = split(drawn)
         for part in parts:
             own = name if len(parts) == 1 else name_in(part) or f"{name}_{len(pieces) + 1}"

@@ -54,16 +54,19 @@ class Drawn:
     left: Counter[Left] = field(default_factory=Counter)
 
 
-def read_entities(layout: Any, scale: float, matrix: FloatArray | None = None) -> Drawn:
+def read_entities(
+    layout: Any, scale: float, matrix: FloatArray | None = None, name: str = ""
+) -> Drawn:
     """Read the entities of a block.
 
     Parameters
     ----------
     scale : millimetres per unit of the file
     matrix : (4, 4) by which the block is placed; row vectors, None leaves it where it is
+    name : of the block
     """
     drawn = Drawn()
-    for entity, at, layer in _placed(layout, matrix, drawn.left, "0", ()):
+    for entity, at, layer in _placed(layout, matrix, drawn.left, "0", (name,)):
         kind = entity.dxftype()
         if kind in _LINES:
             _add_line(drawn, entity, layer, scale, at)
@@ -108,7 +111,7 @@ def _placed(
     """Return every entity with its matrix and layer; layer 0 of a block is that of its INSERT."""
     for entity in layout:
         own = meaning(entity.dxf.layer)
-        own = layer if own == "0" and around else own
+        own = layer if own == "0" else own
         if entity.dxftype() != "INSERT":
             yield entity, matrix, own
             continue

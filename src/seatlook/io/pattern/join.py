@@ -63,16 +63,15 @@ def join_outline(lines: Sequence[FloatArray]) -> tuple[list[Chain], list[float]]
     partner = _partners(lines)
     free = [e for e in range(2 * len(lines)) if partner.get(partner.get(e, -1), -1) != e]
     ends = _ends(lines)
-    lines, gaps = list(lines), []
-    for distance, a, b in _nearest(lines, ends, free):
+    pairs = _nearest(lines, ends, free)
+    for _, a, b in pairs:
         partner[a], partner[b] = b, a
-        if distance > MEETING_MM:
-            gaps.append(distance)
-            for e in (a, b):
-                line = lines[e // 2].copy()
-                line[-(e % 2)] = (ends[a] + ends[b]) / 2
-                lines[e // 2] = line
-    return _chains(lines, partner), gaps
+    whole = [line.copy() for line in lines]
+    # Ends that nearly meet become one: a short step back would cross the outline.
+    for a, b in partner.items():
+        if partner.get(b) == a and np.hypot(*(ends[a] - ends[b])) > MEETING_MM / 100:
+            whole[a // 2][-(a % 2)] = (ends[a] + ends[b]) / 2
+    return _chains(whole, partner), [gap for gap, _, _ in pairs if gap > MEETING_MM]
 
 
 def _nearest(

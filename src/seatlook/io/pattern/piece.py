@@ -106,7 +106,12 @@ class Piece:
         self._find_sew_line(sorted_out.outline, sorted_out.inner)
         if sorted_out.inner:
             count = len(sorted_out.inner)
-            self._note(f"{count} closed lines inside the outline are cut-outs and are ignored")
+            what = (
+                "line inside the outline is a cut-out and is"
+                if count == 1
+                else ("lines inside the outline are cut-outs and are")
+            )
+            self._note(f"{count} closed {what} ignored (layer 1)")
         cut, outline = self._outlines(sorted_out.outline, smallest_notch)
         _check_size(self.name, cut.points, self.notes)
         cuts = (*cut.notches, *outline.notches, *sorted_out.slits, *self._drawn_notches(cut))

@@ -1,0 +1,201 @@
+"""Outlines and blocks as exporters draw them, each with a right value to compare with."""
+
+import numpy as np
+import pytest
+
+from support.dxf_sheet import L_AREA, L_SHAPE, area, sides
+
+
+def add_ellipse(sheet, block):
+    block.add_ellipse((200, 150), major_axis=(150, 40), ratio=0.6, dxfattribs={"layer": "1"})
+    return np.pi * (150**2 + 40**2) * 0.6
+
+
+def add_circle(sheet, block):
+    block.add_circle((0, 0), 140, dxfattribs={"layer": "1"})
+    return np.pi * 140**2
+
+
+def add_spline(sheet, block):
+    """Draw a closed cubic through points of a circle, and of it the area by its own formula."""
+    angles = np.linspace(0, 2 * np.pi, 33)
+    points = [(100 * np.cos(t), 100 * np.sin(t), 0) for t in angles]
+    spline = block.add_spline(points, dxfattribs={"layer": "1"})
+    return np.pi * 100**2 if spline else 0
+
+
+def add_arcs(sheet, block):
+    """Draw a stadium: two half circles and two lines, each a separate entity."""
+    block.add_arc((0, 0), 50, 90, 270, dxfattribs={"layer": "1"})
+    block.add_line((200, 50), (0, 50), dxfattribs={"layer": "1"})
+    block.add_arc((200, 0), 50, 270, 90, dxfattribs={"layer": "1"})
+    block.add_line((0, -50), (200, -50), dxfattribs={"layer": "1"})
+    return np.pi * 50**2 + 200 * 100
+
+
+def add_turned_arcs(sheet, block):
+    """Draw the same seen from below: the arcs' own axes are turned over."""
+    down = {"layer": "1", "extrusion": (0, 0, -1)}
+    block.add_arc((0, 0), 50, -90, 90, dxfattribs=down)
+    block.add_line((200, 50), (0, 50), dxfattribs={"layer": "1"})
+    block.add_arc((-200, 0), 50, 90, 270, dxfattribs=down)
+    block.add_line((0, -50), (200, -50), dxfattribs={"layer": "1"})
+    return np.pi * 50**2 + 200 * 100
+
+
+def add_bulges(sheet, block):
+    points = [(0, 0, 0), (200, 0, 1), (200, 100, 0), (0, 100, 0)]
+    block.add_lwpolyline(points, format="xyb", close=True, dxfattribs={"layer": "1"})
+    return 200 * 100 + np.pi * 50**2 / 2
+
+
+@pytest.mark.parametrize(
+    "draw", [add_circle, add_ellipse, add_spline, add_arcs, add_turned_arcs, add_bulges]
+)
+def test_curved_outlines(sheet, draw):
+    expected = draw(sheet, sheet.block("A"))
+    sheet.insert("A")
+    panels, said = sheet.read()
+    assert area(panels["A"].outline) == pytest.approx(expected, rel=1e-3)
+    assert said == []
+    assert len(panels["A"].corners)
+
+
+# Blocks
+
+TRANSFORMS = {
+    "turned": ({"rotation": 30}, L_AREA, False),
+    "mirrored": ({"xscale": -1}, L_AREA, True),
+    "turned over": ({"yscale": -1, "rotation": 77}, L_AREA, True),
+    "larger": ({"xscale": 2, "yscale": 2}, 4 * L_AREA, False),
+    "stretched": ({"xscale": 2, "yscale": -0.5}, L_AREA, True),
+    "seen from below": ({"extrusion": (0, 0, -1)}, L_AREA, True),
+}
+
+
+@pytest.mark.parametrize("kind", TRANSFORMS)
+def test_insert_with_its_whole_transform(sheet, kind):
+    attributes, expected, is_mirrored = TRANSFORMS[kind]
+    sheet.block("A", L_SHAPE)
+    sheet.insert("A", **attributes)
+    panels, said = sheet.read()
+    outline = panels["A"].outline
+    assert area(outline) == pytest.approx(expected)
+    # Counter-clockwise, the L has its short sides before or after the notch.
+    inner = int(np.argmin(turns(outline)))
+    before, after = sides(outline)[inner - 1], sides(outline)[inner]
+    stretch = (attributes.get("xscale", 1), attributes.get("yscale", 1))
+    long, short = 180 * abs(stretch[0]), 100 * abs(stretch[1])
+    assert [before, after] == pytest.approx([short, long] if is_mirrored else [long, short])
+    assert said == []
+
+
+def turns(points):
+    before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+    return before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+
+
+def test_grain_turns_with_its_block(sheet):
+    sheet.block("A", L_SHAPE)
+    sheet.insert("A", rotation=90)
+    panels, _ = sheet.read()
+    assert panels["A"].grain == pytest.approx([-1, 0], abs=1e-12)
+
+
+def test_blocks_in_blocks(sheet):
+    inner = sheet.document.blocks.new("INNER", base_point=(10, 10))
+    sheet.line(inner, [(10, 10), (110, 10), (110, 60), (10, 60)], "8", closed=False)
+    outer = sheet.block("OUTER", L_SHAPE)
+    sheet.insert("INNER", outer, at=(20, 30), xscale=0.5, yscale=0.5)
+    sheet.insert("OUTER")
+    panels, said = sheet.read()
+    (line,) = panels["OUTER"].internal_lines.values()
+    assert 1e3 * line == pytest.approx(np.array([[20, 30], [70, 30], [70, 55], [20, 55]]))
+    assert said == []
+
+
+def test_sheet_of_pieces_in_a_block(sheet):
+    for name in "AB":
+        sheet.block(name, L_SHAPE)
+    whole = sheet.document.blocks.new("SHEET")
+    sheet.insert("A", whole)
+    sheet.insert("B", whole, xscale=-1, at=(0, 0))
+    sheet.insert("SHEET", xscale=-1)
+    panels, said = sheet.read()
+    assert list(panels) == ["A", "B"]
+    assert [area(p.outline) for p in panels.values()] == pytest.approx([L_AREA, L_AREA])
+    assert panels["B"].outline == pytest.approx(1e-3 * np.array(L_SHAPE))
+    assert said == []
+
+
+def test_block_that_holds_itself_is_left_out_with_a_word(sheet):
+    block = sheet.block("A", L_SHAPE)
+    sheet.insert("A", block)
+    sheet.insert("A")
+    panels, said = sheet.read()
+    assert list(panels) == ["A"]
+    assert said == ["not read: 1 INSERT on layer 1 (a block in itself)"]
+
+
+def test_pieces_used_again_are_numbered(sheet):
+    sheet.block("A", L_SHAPE)
+    for x, attributes in enumerate(({}, {"rotation": 90}, {"xscale": -1}, {})):
+        sheet.insert("A", at=(500 * x, 0), **attributes)
+    sheet.insert("A", at=(0, 0))  # in the place of the first
+    panels, said = sheet.read()
+    assert list(panels) == ["A", "A_2", "A_mirrored", "A_3"]
+    assert said == [f"piece A: it is used again: read as {n}" for n in list(panels)[1:]]
+
+
+def test_rows_and_columns_of_an_insert(sheet):
+    sheet.block("A", L_SHAPE)
+    sheet.insert("A", row_count=2, column_count=3, row_spacing=400, column_spacing=400)
+    panels, _ = sheet.read()
+    assert list(panels) == ["A", *(f"A_{n}" for n in range(2, 7))]
+
+
+@pytest.mark.parametrize("rotation", [0, 35])
+def test_quantity_makes_no_piece_that_the_file_holds(sheet, rotation):
+    sheet.block("LH", L_SHAPE, texts=["Quantity: 1,1"])
+    sheet.block("RH", [(-x, y) for x, y in L_SHAPE])
+    sheet.insert("LH")
+    sheet.insert("RH", rotation=rotation)
+    panels, said = sheet.read()
+    assert list(panels) == ["LH", "RH"]
+    assert said == []
+
+
+def test_piece_that_is_no_mirror_image_does_not_stand_for_one(sheet):
+    sheet.block("LH", L_SHAPE, texts=["Quantity: 1,1"])
+    sheet.block("COPY", L_SHAPE)
+    sheet.insert("LH")
+    sheet.insert("COPY")
+    panels, _ = sheet.read()
+    assert list(panels) == ["LH", "COPY", "LH_mirrored"]
+    made = panels["LH_mirrored"]
+    assert made.outline[:, 0].min() == pytest.approx(panels["LH"].outline[:, 0].min())
+    assert made.outline == pytest.approx(
+        1e-3 * np.array([(300 - x, y) for x, y in [L_SHAPE[0], *L_SHAPE[:0:-1]]])
+    )
+    assert made.corners.tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_two_outlines_in_a_block_are_two_pieces(sheet):
+    block = sheet.block("A", L_SHAPE)
+    sheet.line(block, [(400, 0), (500, 0), (500, 80), (400, 80)])
+    block.add_line((450, 20), (450, 60), dxfattribs={"layer": "7"})
+    sheet.insert("A")
+    panels, said = sheet.read()
+    assert [area(p.outline) for p in panels.values()] == pytest.approx([L_AREA, 8000])
+    assert said == ["piece A: 2 outlines in one block: each a piece"]
+
+
+def test_sizes_in_any_case(sheet):
+    for size in ("m", "L"):
+        scale = 1.0 if size == "m" else 1.5
+        outline = [(scale * x, scale * y) for x, y in L_SHAPE]
+        sheet.block(f"A_{size}", outline, texts=["Piece Name: A", f"SIZE: {size}"])
+        sheet.insert(f"A_{size}")
+    sheet.text(sheet.space, "Sample Size: M")
+    assert area(sheet.read()[0]["A"].outline) == pytest.approx(L_AREA)
+    assert area(sheet.read(size="l")[0]["A"].outline) == pytest.approx(2.25 * L_AREA)

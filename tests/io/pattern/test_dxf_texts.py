@@ -1,0 +1,99 @@
+"""Units and names as exporters write them, each with a right value to compare with."""
+
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from seatlook.errors import InputError, InputWarning
+from seatlook.io import read_dxf
+from support.dxf_sheet import one_piece
+
+
+@pytest.mark.parametrize(
+    ("insunits", "measurement", "title", "options", "mm"),
+    [
+        (None, None, "METRIC", {}, 1),
+        (None, None, "english", {}, 25.4),
+        (None, None, "CM", {}, 10),
+        (5, None, "METRIC", {}, 1),
+        (5, None, None, {}, 10),
+        (1, None, None, {}, 25.4),
+        (6, None, None, {}, 1000),
+        (0, 1, None, {}, 1),
+        (0, 0, None, {}, 25.4),
+        (5, None, None, {"units": "metric"}, 1),
+        (None, None, None, {"units": "cm"}, 10),
+    ],
+)
+def test_units(write, insunits, measurement, title, options, mm):
+    header = [] if insunits is None else ["9", "$INSUNITS", "70", f"{insunits:6d}"]
+    header += [] if measurement is None else ["9", "$MEASUREMENT", "70", str(measurement)]
+    size = 300 / mm
+    rows = ["0", "SECTION", "2", "HEADER", *header, "0", "ENDSEC", "0", "SECTION", "2", "ENTITIES"]
+    rows += ["0", "POLYLINE", "8", "1", "66", "1", "70", "1"]
+    for x, y in ((0, 0), (size, 0), (size, size), (0, size)):
+        rows += ["0", "VERTEX", "8", "1", "10", str(x), "20", str(y)]
+    rows += ["0", "SEQEND"]
+    if title is not None:
+        rows += ["0", "TEXT", "8", "1", "10", "0", "20", "0", "40", "1", "1", f"Units: {title}"]
+    path = write("a.dxf", "\n".join([*rows, "0", "ENDSEC", "0", "EOF", ""]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        (panel,) = read_dxf(path, **options)
+    assert 1e3 * np.ptp(panel.outline, axis=0) == pytest.approx([300, 300])
+
+
+NAMES = {
+    "gb18030": ("座垫", "靠背左", "坐垫面料", "头枕", "后排座椅", "左侧翼", "扶手", "中间片"),
+    "cp932": ("シート", "背もたれ", "座面", "左側", "ヘッドレスト", "右サイド", "中央", "ｼｰﾄ"),
+    "cp1252": ("Größe", "Rücken", "Sitzspiegel groß", "côté", "Kopfstütze", "Übergröße", "señal"),
+    "utf-8": ("座垫", "シート", "Größe", "чехол", "🪑"),
+}
+
+
+@pytest.mark.parametrize("encoding", NAMES)
+def test_names_without_a_code_page(tmp_path, encoding):
+    for name in NAMES[encoding]:
+        path = tmp_path / "a.dxf"
+        path.write_bytes(one_piece(name).encode(encoding))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", InputWarning)
+            assert [p.name for p in read_dxf(path)] == [name]
+        assert [p.name for p in read_dxf(path, encoding=encoding)] == [name]
+
+
+@pytest.mark.parametrize(
+    ("encoding", "message"),
+    [
+        ("klingon", "encoding: got 'klingon', expected an encoding, as gb18030 or cp932"),
+        ("ascii", "expected the encoding of this file"),
+    ],
+)
+def test_encoding_that_is_not_that_of_the_file(tmp_path, encoding, message):
+    path = tmp_path / "a.dxf"
+    path.write_bytes(one_piece("座垫").encode("gbk"))
+    with pytest.raises(InputError, match=message):
+        read_dxf(path, encoding=encoding)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.text(st.characters(exclude_categories=("C", "Z"), exclude_characters="\\%^"), min_size=1)
+    .map(lambda text: text.strip())
+    .filter(lambda text: text and not text.startswith("*"))
+)
+def test_block_names_of_any_characters(tmp_path_factory, name):
+    path = tmp_path_factory.mktemp("name") / "a.dxf"
+    path.write_bytes(one_piece(name).encode("utf-8"))
+    assert [p.name for p in read_dxf(path)] == [name]
+
+
+def test_two_blocks_of_one_name_are_refused(write):
+    whole = one_piece("A")
+    start, stop = whole.index("0\nBLOCK\n"), whole.index("0\nENDSEC")
+    path = write("a.dxf", whole[:stop] + whole[start:stop] + whole[stop:])
+    with pytest.raises(InputError, match="got two blocks called a, expected a name for each"):
+        read_dxf(path)
