@@ -76,7 +76,7 @@ def test_options_reach_the_figures(capsys):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ([DECK], "bent_strip_dynain.k: thickness: got none for 800 shells, first 1"),
+        ([DECK], "bent_strip_dynain.k: thickness: got none for 800 shells of part 1, first 1"),
         ([STRIP, "--part", "back"], "parts: got 'back', expected a part with shells: 1"),
         ([STRIP, "--state", "3", "--out", "o"], "state: got 3, expected 0 to 2"),
         ([STRIP, "--facing", "0", "0", "0"], "--facing: got 0 0 0, expected a direction"),

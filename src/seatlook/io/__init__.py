@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     from seatlook.io.export.writers import (
         export_cover as export_cover,
     )
-    from seatlook.io.lsdyna.d3plot import (
+    from seatlook.io.lsdyna.d3plot.reader import (
         read_d3plot as read_d3plot,
+    )
+    from seatlook.io.lsdyna.deck.reader import (
+        read_keyword as read_keyword,
     )
     from seatlook.io.lsdyna.dynain import (
         write_dynain as write_dynain,
-    )
-    from seatlook.io.lsdyna.keyword import (
-        read_keyword as read_keyword,
     )
     from seatlook.io.lsdyna.shells import (
         read_shells as read_shells,
@@ -110,11 +110,11 @@ _PUBLIC: dict[str, str] = {
     "load_scene": "seatlook.io.scene.read",
     "materials_dir": "seatlook.io.material",
     "read_curves": "seatlook.io.curves",
-    "read_d3plot": "seatlook.io.lsdyna.d3plot",
+    "read_d3plot": "seatlook.io.lsdyna.d3plot.reader",
     "read_dxf": "seatlook.io.pattern.dxf",
     "read_foam": "seatlook.io.mesh",
     "read_foam_material": "seatlook.io.material",
-    "read_keyword": "seatlook.io.lsdyna.keyword",
+    "read_keyword": "seatlook.io.lsdyna.deck.reader",
     "read_material": "seatlook.io.material",
     "read_panels": "seatlook.io.pattern.seams",
     "read_pattern": "seatlook.io.pattern.seams",

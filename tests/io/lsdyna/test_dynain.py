@@ -1,15 +1,18 @@
 """What is written as dynain is read back with the same indices."""
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
 
 from seatlook import wrinkle
 from seatlook.chain.shell_states import ShellCriteria, shell_indices
 from seatlook.errors import InputError
+from seatlook.io.lsdyna.deck.reader import read_keyword
 from seatlook.io.lsdyna.dynain import write_dynain
-from seatlook.io.lsdyna.keyword import read_keyword
 from support.wrinkle_samples import shaped, wave
 
 
@@ -45,14 +48,31 @@ def test_indices_survive_the_file(tmp_path, unit, mode):
         np.testing.assert_allclose(getattr(read.indices, name), getattr(here, name), atol=1e-3)
 
 
-def test_strange_names_and_impossible_strains(tmp_path):
-    solution = solved()
-    names = ("P0\n*NODE\n1", "Wange links")
-    named = dataclasses.replace(
-        solution, cover=dataclasses.replace(solution.cover, panel_names=names)
-    )
-    write_dynain(named, tmp_path / "a.k")
-    assert len(read_keyword(tmp_path / "a.k").shells) == len(solution.cover.faces)
+SOLVED = solved()
+
+
+@settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(names=st.tuples(st.text(), st.text()))
+@example(names=("P0\n*NODE\n1", "Wange links"))
+@example(names=("*NODE", "$ grün, 座套 🪑 = 'x' \u200d\u2028\x00"))
+@example(names=("\ud800", "1,2,3"))
+def test_panels_are_titled_parts_with_sections(tmp_path, names):
+    """A name comes back as one line; what no text file can hold becomes a blank."""
+    cover = dataclasses.replace(SOLVED.cover, panel_names=names)
+    path = tmp_path / "a.k"
+    write_dynain(dataclasses.replace(SOLVED, cover=cover), path)
+    result = read_keyword(path)
+    lines = [re.sub(r"[\x00-\x1f\x7f-\x9f\ud800-\udfff]", " ", name) for name in names]
+    assert list(result.shells.part_names.values()) == [" ".join(line.split()) for line in lines]
+    sections = path.read_text(encoding="utf-8").split("*SECTION_SHELL\n")[1:]
+    t = f"{SOLVED.cover.thickness[0] * 1e3:10.4g}"
+    assert [s.split("\n")[1] for s in sections] == [t * 4] * 2
+
+
+def test_impossible_strains_and_units_are_refused(tmp_path):
+    solution = SOLVED
     crushed = dataclasses.replace(solution, strain_top=np.full_like(solution.strain_top, -0.6))
     with pytest.raises(InputError, match="strains: got -1/2 or less"):
         write_dynain(crushed, tmp_path / "b.k")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,13 +15,15 @@ from seatlook.mesh.kinematics import deformation_gradient, logarithmic_strain
 from seatlook.model import FloatArray, Solution
 
 _MOST = 99_999_999  # numbers are eight digits wide
+_NO_LETTER = re.compile("[\x00-\x1f\x7f-\x9f\ud800-\udfff]")
 
 
 def write_dynain(solution: Solution, path: Path, *, length_unit: str = "mm") -> None:
     """Write nodes, shells with their thickness, and strains on both surfaces.
 
-    One part per panel, numbered from 1 in the order of the panels; a comment names them. Shells
-    are numbered as the faces, from 1, so their normals point to the visible side. Strains are
+    One part per panel, numbered from 1 in the order of the panels and titled with its name, with a
+    section of its mean thickness; its material has the same number and is not written. Shells are
+    numbered as the faces, from 1, so their normals point to the visible side. Strains are
     logarithmic, in global axes, at T = -1 and T = +1; the strain through the thickness is not
     computed here and written as 0.
 
@@ -39,6 +42,7 @@ def write_dynain(solution: Solution, path: Path, *, length_unit: str = "mm") -> 
             "strains", got="-1/2 or less", expected="strains that a stretch can have"
         )
     lines = [*_head(solution, length_unit), *_nodes(solution.positions * scale)]
+    lines += _parts(solution, cover.thickness * scale)
     lines += _shells(solution, cover.thickness * scale)
     lines += _strains(inner, outer)
     write_text(path, "\n".join([*lines, "*END", ""]))
@@ -47,9 +51,25 @@ def write_dynain(solution: Solution, path: Path, *, length_unit: str = "mm") -> 
 def _head(solution: Solution, length_unit: str) -> Iterator[str]:
     yield "*KEYWORD"
     yield f"$ solved cover, status: {solution.status}; unit of length: {length_unit}"
-    for number, name in enumerate(solution.cover.panel_names, 1):
-        # A line break in a name would start a card.
-        yield f"$ part {number}: {' '.join(name.split())}"
+    yield "$ materials are not written: each part needs one of its own number"
+
+
+def _parts(solution: Solution, thickness: FloatArray) -> Iterator[str]:
+    """Part and section of each panel that has faces."""
+    cover = solution.cover
+    for number, name in enumerate(cover.panel_names, 1):
+        inside = cover.panel == number - 1
+        if not inside.any():
+            continue
+        yield from ("*PART", _title(name), f"{number:10d}" * 3)
+        yield from ("*SECTION_SHELL", f"{number:10d}{2:10d}")
+        yield f"{float(thickness[inside].mean()):10.4g}" * 4
+
+
+def _title(name: str) -> str:
+    """Make a name a card: one line, and nothing that begins a keyword or a comment."""
+    line = " ".join(_NO_LETTER.sub(" ", name).split())
+    return f" {line}" if line.startswith(("*", "$")) else line
 
 
 def _nodes(positions: FloatArray) -> Iterator[str]:

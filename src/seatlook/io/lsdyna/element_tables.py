@@ -15,6 +15,7 @@ from seatlook.model import FloatArray, IntArray, Shells
 
 LENGTH_UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254}
 _SMALLEST, _LARGEST = 2e-3, 20.0  # [m] extent of a cover or of the car around it
+_THINNEST = 2e-5  # [m]; below lies a car in metres that is taken for a seat in millimetres
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +142,16 @@ def _check_extent(file: Path, points: FloatArray) -> None:
         raise InputError.single(
             "nodes", got=f"an extent of {extent:.3g} m", file=file,
             expected=f"{_SMALLEST:g} to {_LARGEST:g} m", hint="say the unit of length",
+        )  # fmt: skip
+
+
+def check_thickness_unit(file: Path, thickness: FloatArray) -> None:
+    """Refuse thicknesses [m] of a file that only a wrong unit explains."""
+    middle = float(np.median(thickness)) if len(thickness) else 0.0
+    if 0 < middle < _THINNEST:
+        raise InputError.single(
+            "thickness", got=f"{middle * 1e3:.3g} mm in the middle", file=file,
+            expected=f"{_THINNEST * 1e3:g} mm or more", hint="say the unit of length",
         )  # fmt: skip
 
 

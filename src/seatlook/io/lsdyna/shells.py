@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.d3plot import read_d3plot
-from seatlook.io.lsdyna.keyword import read_keyword
+from seatlook.io.lsdyna.d3plot.reader import read_d3plot
+from seatlook.io.lsdyna.deck.reader import read_keyword
 from seatlook.model import ShellResult
 from seatlook.model.shells import StrainAxes
 

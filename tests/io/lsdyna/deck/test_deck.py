@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.keyword import read_keyword
+from seatlook.io.lsdyna.deck.reader import read_keyword
 
 
 def card(*fields, width=10):
@@ -197,3 +197,13 @@ def test_what_cannot_be_read_is_named(write, change, message):
     with pytest.raises(InputError) as caught:
         read_keyword(write("d.k", deck(**change)))
     assert message in str(caught.value)
+
+
+def test_a_deck_in_metres_is_not_taken_as_millimetres(write, problems):
+    """A car of 4.5 m is 4.5 mm wide then, which a small sample may be; no cover is 2 um thick."""
+    path = write("d.k", deck().replace(SECTION[-1], card(*["2.0-3"] * 4)))
+    assert problems(read_keyword, path) == [
+        "d.k: thickness: got 0.002 mm in the middle, expected 0.02 mm or more (say the unit of "
+        "length)"
+    ]
+    assert read_keyword(path, thickness=0.001).read(0).thickness.tolist() == [0.001, 0.001]

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.io.lsdyna.d3plot_family import (
+from seatlook.io.lsdyna.d3plot.family import (
     Stored,
     family_of,
     find_states,
@@ -23,12 +23,13 @@ from seatlook.io.lsdyna.d3plot_family import (
     last_mesh,
     map_words,
 )
-from seatlook.io.lsdyna.d3plot_layout import Layout, Words, read_layout, word_type
-from seatlook.io.lsdyna.d3plot_parts import read_titles, user_numbers
-from seatlook.io.lsdyna.d3plot_row import refuse
+from seatlook.io.lsdyna.d3plot.layout import Layout, Words, read_layout, word_type
+from seatlook.io.lsdyna.d3plot.parts import read_titles, user_numbers
+from seatlook.io.lsdyna.d3plot.row import refuse
 from seatlook.io.lsdyna.element_tables import (
     ElementTable,
     Selection,
+    check_thickness_unit,
     finite,
     select,
     unit_in_metres,
@@ -131,6 +132,7 @@ class _Reader:
             inner, outer = _tensors(both[:, :6]), _tensors(both[:, 6:])
         if self.thickness is None:
             t = rows[:, lay.thickness][row].astype(np.float64) * self.scale
+            check_thickness_unit(lay.file, t[alive])
         else:
             t = np.full(len(row), self.thickness)
         finite(lay.file, f"{what}: thickness", t, chosen.shells.element_ids)

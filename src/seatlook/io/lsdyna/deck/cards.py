@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.placement import DECK, Placement
+from seatlook.io.lsdyna.deck.placement import DECK, Placement
 from seatlook.model import FloatArray, IntArray
 
 LONG_WIDTH = 20

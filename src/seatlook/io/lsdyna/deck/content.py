@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.cards import Block, refuse
-from seatlook.io.lsdyna.composite import composite_shells
-from seatlook.io.lsdyna.includes import deck_blocks
-from seatlook.io.lsdyna.parts import read_parts, read_sections
-from seatlook.io.lsdyna.placement import shifted
-from seatlook.io.lsdyna.transformation import Transformations, read_transformations
+from seatlook.io.lsdyna.deck.cards import Block, refuse
+from seatlook.io.lsdyna.deck.composite import composite_shells
+from seatlook.io.lsdyna.deck.includes import deck_blocks
+from seatlook.io.lsdyna.deck.parts import read_parts, read_sections
+from seatlook.io.lsdyna.deck.placement import shifted
+from seatlook.io.lsdyna.deck.transformation import Transformations, read_transformations
 from seatlook.io.toml import read_file
 from seatlook.model import FloatArray, IntArray
 

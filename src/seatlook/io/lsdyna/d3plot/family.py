@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.d3plot_layout import Layout, Words, is_end
-from seatlook.io.lsdyna.d3plot_row import refuse
+from seatlook.io.lsdyna.d3plot.layout import Layout, Words, is_end
+from seatlook.io.lsdyna.d3plot.row import refuse
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.d3plot import read_d3plot
+from seatlook.io.lsdyna.d3plot.reader import read_d3plot
 from seatlook.io.lsdyna.shells import read_shells
 from support.d3plot_samples import d3plot, quad_strip
 
-DATA = Path(__file__).parents[2] / "data"
+DATA = Path(__file__).parents[3] / "data"
 NODES, SHELLS = quad_strip()
 E, N = len(SHELLS), len(NODES)
 
@@ -262,7 +262,7 @@ def test_ten_thousand_damaged_files_give_an_input_error_or_a_result(save):
 @pytest.mark.validate
 def test_a_real_result_with_shells():
     """A tension specimen of the lasso project's tests, read where it is at hand."""
-    path = Path(__file__).parents[4] / "shared/data/fetched/lasso_simple_d3plot/d3plot"
+    path = Path(__file__).parents[5] / "shared/data/fetched/lasso_simple_d3plot/d3plot"
     if not path.exists():
         pytest.skip("third-party sample absent")
     result = read_d3plot(path)

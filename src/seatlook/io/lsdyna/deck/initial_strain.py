@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.cards import LONG_WIDTH, Block
-from seatlook.io.lsdyna.placement import shifted
-from seatlook.io.lsdyna.shell_sets import of_set
-from seatlook.io.lsdyna.transformation import Transformations
+from seatlook.io.lsdyna.deck.cards import LONG_WIDTH, Block
+from seatlook.io.lsdyna.deck.placement import shifted
+from seatlook.io.lsdyna.deck.shell_sets import of_set
+from seatlook.io.lsdyna.deck.transformation import Transformations
 from seatlook.model import FloatArray, IntArray
 from seatlook.model.shells import StrainAxes
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatlook.io.lsdyna.d3plot_layout import Layout, Words, is_end
-from seatlook.io.lsdyna.d3plot_row import refuse
+from seatlook.io.lsdyna.d3plot.layout import Layout, Words, is_end
+from seatlook.io.lsdyna.d3plot.row import refuse
 from seatlook.io.lsdyna.element_tables import text
 from seatlook.model import IntArray
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.keyword import read_keyword
+from seatlook.io.lsdyna.deck.reader import read_keyword
 
-DATA = Path(__file__).parents[2] / "data"
+DATA = Path(__file__).parents[3] / "data"
 
 # One quadrilateral 1-2-3-4 and one triangle 2-5-3, 10 mm wide; t = 1.2 mm.
 NODES = [(1, 0, 0), (2, 10, 0), (3, 10, 10), (4, 0, 10), (5, 20, 0)]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.d3plot import read_d3plot
+from seatlook.io.lsdyna.d3plot.reader import read_d3plot
 from support.d3plot_samples import d3plot, quad_strip
 
 NODES, SHELLS = quad_strip()
@@ -108,3 +108,9 @@ def test_of_an_adaptive_run_the_last_mesh_is_read(tmp_path):
     last.write_bytes(b"")
     with pytest.raises(InputError, match="d3plotab: "):
         read_d3plot(first)
+
+
+def test_a_d3plot_in_metres_is_not_taken_as_millimetres(tmp_path):
+    result = read_d3plot(save(tmp_path, [state(thickness=0.0012)]))
+    with pytest.raises(InputError, match=r"d3plot: thickness: got 0.0012 mm in the middle"):
+        result.read(0)

@@ -5,8 +5,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from seatlook.io.lsdyna.d3plot import read_d3plot
-from seatlook.io.lsdyna.d3plot_row import shell_row
+from seatlook.io.lsdyna.d3plot.reader import read_d3plot
+from seatlook.io.lsdyna.d3plot.row import shell_row
 from support.d3plot_samples import d3plot, quad_strip
 
 NODES, SHELLS = quad_strip()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from seatlook.io.lsdyna.cards import Block, refuse
+from seatlook.io.lsdyna.deck.cards import Block, refuse
 from seatlook.model import FloatArray, IntArray
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from seatlook.io.lsdyna.cards import Block, refuse
+from seatlook.io.lsdyna.deck.cards import Block, refuse
 from seatlook.model import IntArray
 
 _OPTIONS = {"", "ALL", "ELEM", "DELEM", "PART", "DPART"}

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError, Problem
-from seatlook.io.lsdyna.d3plot_row import refuse, shell_row
+from seatlook.io.lsdyna.d3plot.row import refuse, shell_row
 
 END_MARK = -999999.0
 RIGID = 20  # material type of rigid bodies, whose shells have no state data

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.keyword import read_keyword
+from seatlook.io.lsdyna.deck.reader import read_keyword
 
 QUARTER = np.pi / 2
 

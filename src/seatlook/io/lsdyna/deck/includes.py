@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.cards import Block, blocks, refuse
-from seatlook.io.lsdyna.placement import DECK, Move, Placement
+from seatlook.io.lsdyna.deck.cards import Block, blocks, refuse
+from seatlook.io.lsdyna.deck.placement import DECK, Move, Placement
 from seatlook.io.toml import read_file
 
 _MAX_INCLUDES = 100

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from seatlook.io.lsdyna.cards import Block, refuse
-from seatlook.io.lsdyna.composite import ply_thickness
+from seatlook.io.lsdyna.deck.cards import Block, refuse
+from seatlook.io.lsdyna.deck.composite import ply_thickness
 from seatlook.io.lsdyna.element_tables import text
 
 # Options of *PART, and the cards that they add behind the first of a part.

@@ -15,15 +15,16 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.deck import Deck, read_deck
+from seatlook.io.lsdyna.deck.content import Deck, read_deck
+from seatlook.io.lsdyna.deck.initial_strain import SurfaceStrains, surface_strains
+from seatlook.io.lsdyna.deck.shell_sets import shell_sets
 from seatlook.io.lsdyna.element_tables import (
     ElementTable,
     Selection,
+    check_thickness_unit,
     select,
     unit_in_metres,
 )
-from seatlook.io.lsdyna.initial_strain import SurfaceStrains, surface_strains
-from seatlook.io.lsdyna.shell_sets import shell_sets
 from seatlook.model import FloatArray, IntArray, ShellResult, ShellState
 
 
@@ -73,6 +74,8 @@ def read_keyword(
         )  # fmt: skip
     t = _thickness(deck, chosen, scale) if thickness is None else np.full(len(shells), thickness)
     _check_thickness(deck, table, chosen, t)
+    if thickness is None:
+        check_thickness_unit(file, t)
     state = ShellState(
         time=0.0,
         positions=positions[chosen.nodes],

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.io.lsdyna.cards import Block, Table, refuse
-from seatlook.io.lsdyna.placement import Move, Placement
+from seatlook.io.lsdyna.deck.cards import Block, Table, refuse
+from seatlook.io.lsdyna.deck.placement import Move, Placement
 from seatlook.model import FloatArray
 
 _KNOWN = "SCALE, ROTATE, TRANSL, POINT or POS6P"

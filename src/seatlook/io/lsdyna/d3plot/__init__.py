@@ -1,0 +1,1 @@
+"""The d3plot format: results of all states."""

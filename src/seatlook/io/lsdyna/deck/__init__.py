@@ -1,0 +1,1 @@
+"""The keyword format: decks and dynain files."""
