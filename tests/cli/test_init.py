@@ -224,3 +224,20 @@ def test_a_dry_run_lists_the_cells_and_makes_nothing(started, tmp_path, capsys):
     assert len(cells) == 3 * 2
     assert cells[0]["ev100"] == pytest.approx(15.3, abs=0.5)
     assert not (tmp_path / "o").exists()
+
+
+def test_encoding_and_grain_go_into_the_scene(own, tmp_path, capsys):
+    files = [str(own / "cover.dxf"), str(own / "foam.obj"), "--out"]
+    options = ["--encoding", "gb18030", "--grain-deg", "30"]
+    assert run(["init", *files, str(tmp_path / "a"), *options]) == 0
+    scene = tmp_path / "a/scene.toml"
+    text = scene.read_text()
+    assert 'encoding = "gb18030"\n' in text
+    assert "grain_deg = 30.0\n" in text
+    # Its panels have grain lines, which count.
+    assert {tuple(p.grain.tolist()) for p in io.load_scene(scene).pattern.panels} == {(0.0, 1.0)}
+    assert run(["init", *files, str(tmp_path / "b"), "--encoding", "klingon"]) == 2
+    assert "encoding: got 'klingon'" in capsys.readouterr().err
+    scene.write_text(text.replace("gb18030", "klingon"))
+    with pytest.raises(InputError, match="encoding: got 'klingon'"):
+        io.load_scene(scene)

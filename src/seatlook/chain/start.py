@@ -15,6 +15,7 @@ from seatlook import io
 from seatlook.assembly.seam_guess import Proposal, propose_seams
 from seatlook.assembly.unfolding import Layout, lay_out
 from seatlook.errors import InputError
+from seatlook.io.pattern.units import Units
 from seatlook.io.templates import write_template
 from seatlook.mesh.polyline import length
 from seatlook.model import FloatArray, Foam, FoamMaterial, Pattern
@@ -31,8 +32,9 @@ class StartChoices(TypedDict, total=False):
 
     ``unit`` ("mm", "m") and ``up`` ("z", "y") of the foam's file; ``material`` and
     ``foam_material``: supplied names or files; ``seams``: file taken instead of a guess; ``wires``:
-    curves file of the wires in the foam; ``size`` and ``units`` of the pattern; ``top``: the panel
-    on top, turned by ``turn_deg``; ``force``: write over a scene that is there.
+    curves file of the wires in the foam; ``size``, ``units`` and ``encoding`` of the pattern, and
+    ``grain_deg`` of its pieces without a grain line; ``top``: the panel on top, turned by
+    ``turn_deg``; ``force``: write over a scene that is there.
     """
 
     unit: Literal["mm", "m"] | None
@@ -42,7 +44,9 @@ class StartChoices(TypedDict, total=False):
     seams: Path | None
     wires: Path | None
     size: str | None
-    units: Literal["metric", "english"] | None
+    units: Units | None
+    encoding: str | None
+    grain_deg: float | None
     top: str | None
     turn_deg: float
     force: bool
@@ -90,7 +94,7 @@ def init(
     filling_name = choices.get("foam_material", "foam-seat")
     cloth, filling = io.read_material(material), io.read_foam_material(filling_name)
     seams, wires, up = choices.get("seams"), choices.get("wires"), choices.get("up", "z")
-    proposal = _sewn(cut, seams, choices.get("size"), choices.get("units"))
+    proposal = _sewn(cut, seams, choices)
     body, unit, notes = _foam(body_file, filling, choices.get("unit"), up)
     turn = choices.get("turn_deg", 0.0)
     layout = lay_out(
@@ -109,6 +113,7 @@ def init(
         pattern=_seen_from(cut, folder),
         seams=SEAMS if seams is None else _seen_from(seams, folder),
         size=choices.get("size"), units=choices.get("units"), unit=unit, up=up,
+        encoding=choices.get("encoding"), grain_deg=choices.get("grain_deg"),
         foam=_seen_from(body_file, folder),
         material=_name_or_path(material, folder),
         foam_material=_name_or_path(filling_name, folder),
@@ -137,16 +142,17 @@ def _check_files(pattern: Path, foam: Path, out: Path, *, force: bool) -> None:
         )
 
 
-def _sewn(
-    pattern: Path,
-    seams: Path | None,
-    size: str | None,
-    units: Literal["metric", "english"] | None,
-) -> Proposal:
+def _sewn(pattern: Path, seams: Path | None, choices: StartChoices) -> Proposal:
     """Guess the seams, or read those of the user."""
+    size, units = choices.get("size"), choices.get("units")
+    encoding, grain_deg = choices.get("encoding"), choices.get("grain_deg")
     if seams is None:
-        return propose_seams(io.read_panels(pattern, size=size, units=units))
-    read = io.read_pattern(pattern, seams, size=size, units=units)
+        return propose_seams(
+            io.read_panels(pattern, size=size, units=units, encoding=encoding, grain_deg=grain_deg)
+        )
+    read = io.read_pattern(
+        pattern, seams, size=size, units=units, encoding=encoding, grain_deg=grain_deg
+    )
     sewn = {name for seam in read.seams for name in (seam.a, *seam.b)}
     return Proposal(
         pattern=read,

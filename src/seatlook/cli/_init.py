@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from seatlook.cli._output import Json, note, progress, table
+from seatlook.io.pattern.units import Units
 
 
 def init(
@@ -23,7 +24,9 @@ def init(
     seams: Path | None = None,
     wires: Path | None = None,
     size: str | None = None,
-    units: Literal["metric", "english"] | None = None,
+    units: Units | None = None,
+    encoding: str | None = None,
+    grain_deg: float | None = None,
     top: str | None = None,
     turn_deg: float = 0.0,
     force: Annotated[bool, Parameter(negative=())] = False,
@@ -55,6 +58,10 @@ def init(
         Which of the pattern's graded sizes.
     units
         Units of a DXF that does not say them.
+    encoding
+        Encoding of the names in the DXF, as gb18030; guessed if not given.
+    grain_deg
+        Warp of panels without a grain line, from the pattern's x axis; 90 if not given.
     top
         Panel that lies on top; the largest if not given.
     turn_deg
@@ -69,7 +76,8 @@ def init(
         first = start(
             pattern, foam, out,
             unit=unit, up=up, material=material, foam_material=foam_material, seams=seams,
-            wires=wires, size=size, units=units, top=top, turn_deg=turn_deg, force=force,
+            wires=wires, size=size, units=units, encoding=encoding, grain_deg=grain_deg, top=top,
+            turn_deg=turn_deg, force=force,
         )  # fmt: skip
     note(*first.notes)
     reasons, proposal = first.reasons, first.proposal

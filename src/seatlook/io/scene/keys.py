@@ -6,6 +6,7 @@ docs/reference/scene.md explains them.
 from __future__ import annotations
 
 from seatlook.io.colour import Colour
+from seatlook.io.pattern.units import UNITS
 from seatlook.io.scene.views import CAMERA, RIG
 from seatlook.io.schema import (
     MM,
@@ -36,7 +37,9 @@ KEYS: dict[str, Kind] = {
             "file": Text(required=True),
             "seams": Text(required=True),
             "size": Text(),
-            "units": Text(choices=("metric", "english")),
+            "units": Text(choices=UNITS),
+            "encoding": Text(),
+            "grain_deg": Number(),
             "material": Text(),
         },
         required=True,

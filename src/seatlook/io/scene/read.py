@@ -138,6 +138,8 @@ class _Reader:
                 seams,
                 size=row["size"],
                 units=row["units"],
+                encoding=row["encoding"],
+                grain_deg=row["grain_deg"],
                 smallest_notch=SMALLEST_NOTCH if notch is None else notch,
             )
         except InputError as error:
