@@ -6,6 +6,7 @@ import contextlib
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -126,10 +127,10 @@ def test_doctor_names_the_library_it_found(tmp_path):
     assert found["GL window"].startswith("vtk")
     assert found["cores"] == os.cpu_count()
     assert found["kernel threads"] >= 1
-    assert found["kernel cache kept"] is True
-    assert found["field cache kept"] is True
+    assert found["kernel cache writable"] is True
+    assert found["field cache writable"] is True
     assert found["field cache"] == str(Path(os.environ["SEATLOOK_CACHE_DIR"]) / "fields")
-    assert found["fields kept"].endswith(" MB")
+    assert found["fields in cache"].endswith(" MB")
     assert done.stderr == "nothing to do: this machine can solve and draw\n"
     quiet = seatlook("doctor", "--json", "--quiet", cwd=tmp_path)
     assert quiet.stderr == ""
@@ -171,7 +172,7 @@ def test_without_a_gl_library_it_ends_with_3_before_any_work(command, demo_scene
         [sys.executable, "-c", HIDDEN, *words], capture_output=True, text=True, check=False
     )
     assert done.returncode == 3
-    assert ("GL library         -" in done.stdout) == (command == "doctor")
+    assert bool(re.search(r"(?m)^GL library +-$", done.stdout)) == (command == "doctor")
     assert "as root:" in done.stderr
     assert "without root:" in done.stderr
     assert "Traceback" not in done.stderr
