@@ -156,9 +156,9 @@ def measure(wanted: Callable[[Case], bool] = lambda case: True) -> list[dict[str
 
 def forget(studio: Studio) -> None:
     """Drop what the last picture left of light; the faces seen stay."""
-    kept = studio._kept._values
-    for key in [k for k in kept if k[0] != "faces"]:
-        del kept[key]
+    values = studio._cache._values
+    for key in [k for k in values if k[0] != "faces"]:
+        del values[key]
 
 
 def cover_of(studio: Studio) -> np.ndarray:

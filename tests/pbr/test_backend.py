@@ -108,9 +108,9 @@ def test_error_lists_what_was_tried(monkeypatch):
 
 
 def test_this_machine_has_a_library():
-    found = backend.offscreen_backend()
-    assert found.window in ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
-    assert os.environ["VTK_DEFAULT_OPENGL_WINDOW"] == found.window
+    result = backend.offscreen_backend()
+    assert result.window in ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
+    assert os.environ["VTK_DEFAULT_OPENGL_WINDOW"] == result.window
 
 
 def test_unpacked_library_is_loaded_with_what_it_needs(tmp_path, monkeypatch):
@@ -148,6 +148,6 @@ def test_unpacked_library_is_loaded_with_what_it_needs(tmp_path, monkeypatch):
             check=True,
         )
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
-    found = backend._unpacked_osmesa()
-    assert found.window == "vtkOSOpenGLRenderWindow"
-    assert ctypes.CDLL(found.library).osmesa() == 7
+    result = backend._unpacked_osmesa()
+    assert result.window == "vtkOSOpenGLRenderWindow"
+    assert ctypes.CDLL(result.library).osmesa() == 7

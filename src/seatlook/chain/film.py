@@ -70,13 +70,13 @@ def draw(
 ) -> Iterator[Pixels]:
     """Draw shots, each with its stage and time written below, (h, w, 3) uint8.
 
-    As clay; with a rig, rendered in their own materials, which takes some ten times as long.
+    As previews; with a rig, rendered in their own materials, which takes some ten times as long.
     """
     view = _far_enough(camera, taken)
     for shot in taken:
         state = dataclasses.replace(solution, positions=shot.positions)
         if rig is None:
-            picture = pbr.sketch(state, camera=view)
+            picture = pbr.render_preview(state, camera=view)
         else:
             picture = pbr.render(state, rig=rig, camera=view, quality="draft").to_srgb()
         yield _labelled(picture, f"{shot.stage}, {shot.time:.2f} s")
@@ -109,7 +109,7 @@ def film(
     Parameters
     ----------
     folder : where the stages of the solution were kept
-    rig : lights of the picture per stage; without it that is drawn as clay, as the animation is
+    rig : lights of the picture per stage; without it that is a preview, as the animation is
     width : of one picture [px]; the height follows from the camera
     seconds : the animation lasts
     """

@@ -33,8 +33,8 @@ def timeline(
     Parameters
     ----------
     rig
-        Rig of the scene to render the picture per stage in, in the panels' own materials. As clay,
-        like the animation, if not given.
+        Rig of the scene to render the picture per stage in, in the panels' own materials. Without
+        it that is a preview, like the animation.
     view
         Camera of the scene. The first if not given; it steps back until all panels are in view.
     width

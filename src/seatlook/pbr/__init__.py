@@ -29,7 +29,7 @@ if TYPE_CHECKING:
         render_map as render_map,
     )
     from seatlook.pbr.maps.preview import (
-        sketch as sketch,
+        render_preview as render_preview,
     )
     from seatlook.pbr.picture import (
         Image as Image,
@@ -60,7 +60,7 @@ _PUBLIC: dict[str, str] = {
     "render": "seatlook.pbr.shading.studio",
     "render_checker": "seatlook.pbr.maps.checker",
     "render_map": "seatlook.pbr.maps.face_map",
-    "sketch": "seatlook.pbr.maps.preview",
+    "render_preview": "seatlook.pbr.maps.preview",
 }
 
 __all__ = [
@@ -75,7 +75,7 @@ __all__ = [
     "render",
     "render_checker",
     "render_map",
-    "sketch",
+    "render_preview",
 ]
 
 if not TYPE_CHECKING:

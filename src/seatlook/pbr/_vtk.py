@@ -1,4 +1,4 @@
-"""The fence: the only file that imports VTK. It tells which triangle each sample sees.
+"""The fence: the only file that imports VTK. It finds the triangle that each sample sees.
 
 Nothing is shaded here. One shader writes the number of the triangle into a float32 framebuffer;
 position, normal and light follow from it in ``kernels``, in double precision and with one BRDF.

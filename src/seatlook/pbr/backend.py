@@ -100,12 +100,12 @@ def _system_osmesa() -> Backend:
 
 def _unpacked_osmesa() -> Backend:
     """Load OSMesa and what it needs by path; VTK then finds it by its soname."""
-    found = sorted(unpacked_folder().glob(f"usr/lib/*/{_OSMESA}"))
-    if not found:
+    candidates = sorted(unpacked_folder().glob(f"usr/lib/*/{_OSMESA}"))
+    if not candidates:
         raise OSError(f"{unpacked_folder()}: no usr/lib/*/{_OSMESA}")
-    library = found[0]
+    library = candidates[0]
     waiting = [p for p in sorted(library.parent.glob("*.so*")) if p.name != library.name]
-    # Libraries need each other in an order that only loading them tells.
+    # Libraries need each other in an order that only loading them shows.
     while True:
         left = [path for path in waiting if not _loads(path)]
         if len(left) == len(waiting):

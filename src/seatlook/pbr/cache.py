@@ -9,7 +9,7 @@ from typing import Any
 _MOST = 24
 
 
-class Kept:
+class Cache:
     """Values by key, the 24 used last.
 
     It knows nothing of its owner. A studio that its own parts refer to would wait, with all of

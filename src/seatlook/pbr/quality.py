@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from seatlook.errors import InputError, did_you_mean
 
 # As many as the kernels have room for.
-_FACETS = 8
+_MOST = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,7 +19,7 @@ class Quality:
     factor : samples per pixel and axis
     rays : shadow rays per sample where a shadow has its edge; 0 for no shadows
     strata : the half-space is seen along strata^2 rays per vertex; 0 leaves it all open
-    facets : of a relief, along each side of a pixel, 1 to 8
+    relief : samples of a relief along each side of a pixel, 1 to 8
     bounces : how often light may go from cover to cover
     error : FLIP against the path tracer, the worst of ``gallery/work_precision_render.py``, and no
         less than that of the next tier
@@ -28,29 +28,29 @@ class Quality:
     factor: int
     rays: int
     strata: int
-    facets: int
+    relief: int
     bounces: int
     error: float
 
     def __post_init__(self) -> None:
-        if not 1 <= self.facets <= _FACETS:
-            raise InputError.single("facets", got=self.facets, expected=f"1 to {_FACETS}")
+        if not 1 <= self.relief <= _MOST:
+            raise InputError.single("relief", got=self.relief, expected=f"1 to {_MOST}")
 
 
 # Cheapest first.
 TIERS: dict[str, Quality] = {
-    "T0": Quality(factor=1, rays=0, strata=0, facets=2, bounces=0, error=0.0672),
-    "T1": Quality(factor=1, rays=1, strata=0, facets=2, bounces=0, error=0.0672),
-    "T2": Quality(factor=2, rays=4, strata=0, facets=2, bounces=0, error=0.0672),
-    "T3": Quality(factor=2, rays=4, strata=8, facets=2, bounces=1, error=0.0388),
-    "T4": Quality(factor=4, rays=4, strata=16, facets=8, bounces=3, error=0.0200),
+    "T0": Quality(factor=1, rays=0, strata=0, relief=2, bounces=0, error=0.0672),
+    "T1": Quality(factor=1, rays=1, strata=0, relief=2, bounces=0, error=0.0672),
+    "T2": Quality(factor=2, rays=4, strata=0, relief=2, bounces=0, error=0.0672),
+    "T3": Quality(factor=2, rays=4, strata=8, relief=2, bounces=1, error=0.0388),
+    "T4": Quality(factor=4, rays=4, strata=16, relief=8, bounces=3, error=0.0200),
 }
 QUALITIES: dict[str, Quality] = {
     "draft": TIERS["T1"],
     "standard": TIERS["T3"],
     # A score compares two pictures: one ray of 64 that meets a highlight in only one of them shows,
-    # and so does the noise of four facets.
-    "score": replace(TIERS["T3"], strata=12, facets=4),
+    # and so does the noise of four relief samples.
+    "score": replace(TIERS["T3"], strata=12, relief=4),
     "high": TIERS["T4"],
     **TIERS,
 }

@@ -1,4 +1,4 @@
-"""Light that the facets of a relief reflect, against the BRDF of each and against integrals."""
+"""Light that the samples of a relief reflect, against the BRDF of each and against integrals."""
 
 from __future__ import annotations
 
@@ -10,29 +10,21 @@ import pytest
 from seatlook.errors import InputError
 from seatlook.io.material import read_material
 from seatlook.model import Appearance, Rig
-from seatlook.pbr.kernels import brdf as kernel
+from seatlook.pbr.kernels.coherent import FIRST_HALF, SECOND_HALF, WHOLE
 from seatlook.pbr.kernels.light import above_horizon, disc_of
-from seatlook.pbr.kernels.relief_light import brdf_facets, look_at_discs
+from seatlook.pbr.kernels.relief_light import brdf_of_relief, look_at_discs
 from seatlook.pbr.kernels.relief_samples import (
-    DISC_X,
-    DISC_Y,
     MOST,
-    NOV,
-    ROOM,
-    SHARE,
-    X,
-    Y,
-    Z,
+    RELIEF,
+    Relief,
     _half,
     _upwards,
-    layers_to_eye,
+    layers_towards,
 )
-from seatlook.pbr.kernels.tables import coupling, coupling_at, fibres, layers
 from seatlook.pbr.light.rig import pack_lights
 from seatlook.pbr.quality import Quality
 from seatlook.pbr.reflectance import brdf
-from seatlook.pbr.reflectance.tables import load_tables
-from seatlook.pbr.shading.studio import NAP_NODES, NODES, pack_materials
+from support.reference.furnace import reflector_of
 
 COUNT = 16
 
@@ -42,41 +34,35 @@ def unit(v):
 
 
 def tilted(rng, deviation):
-    """Normals (n, 3) of facets with Gaussian slopes."""
+    """Normals (n, 3) of relief samples with Gaussian slopes."""
     slopes = deviation * rng.standard_normal((COUNT, 2))
     return unit(np.column_stack([-slopes, np.ones(COUNT)]))
 
 
+def empty_relief(size):
+    """Return rows that hold no number yet."""
+    rows = np.zeros(1, RELIEF)
+    rows.view(float)[:] = np.nan
+    return Relief(rows[0], size)
+
+
 def reflected(appearance: Appearance, normals, v, l):
-    """Mean over facets of BRDF times cosine as the renderer has it, under a point far away."""
-    tables, materials = load_tables(), pack_materials([appearance])
-    means = np.empty((1, len(tables.scale_mean)))
-    coupling(tables, materials, means)
-    n = unit(normals.mean(axis=0))
-    view = kernel.view_of(
-        tables, materials[0], appearance.roughness, tuple(appearance.albedo), 0.0, 0.0, n @ v
-    )
-    facets = np.full(ROOM, np.nan)
-    for row, values in ((X, normals[:, 0]), (Y, normals[:, 1]), (Z, normals[:, 2])):
-        facets[row : row + COUNT] = values
-    facets[NOV : NOV + COUNT], facets[SHARE : SHARE + COUNT] = normals @ v, 1.0
-    at, nap = np.empty((1, NODES, 5)), np.empty((1, NAP_NODES))
-    layers(tables, materials, at)
-    fibres(tables, materials, nap)
-    layers_to_eye(at[0], facets, COUNT)
+    """Mean over a relief of BRDF times cosine as the renderer has it, under a point far away."""
+    reflector = reflector_of(appearance, (0.0, 0.0, unit(normals.mean(axis=0)) @ v))
+    relief = empty_relief(COUNT)
+    for axis, name in enumerate("xyz"):
+        relief.rows[name][:COUNT] = normals[:, axis]
+    relief.rows["NoV"][:COUNT], relief.rows["share"][:COUNT] = normals @ v, 1.0
+    layers_towards(reflector.layers, relief.rows["NoV"], COUNT, relief.rows["layers"])
     lights = pack_lights(Rig(name="r", lights=(), ambient=1.0))
-    look_at_discs(lights, 0, facets, COUNT)
+    look_at_discs(lights, 0, relief)
     disc, out = disc_of(lights, 0.0, tuple(l)), np.empty(3)
-    mean = coupling_at(means[0], view.table_roughness)
-    up = (0.0, 0.0, 1.0)
-    brdf_facets(
-        materials[0], at[0], nap[0], mean, view, facets, COUNT, disc, 0.0, up, tuple(v), out
-    )
+    brdf_of_relief(reflector, relief, disc, 0.0, (0.0, 0.0, 1.0), tuple(v), out)
     return out
 
 
 def expected(appearance: Appearance, normals, v, l):
-    """Return the same by the NumPy BRDF in the frame of each facet."""
+    """Return the same by the NumPy BRDF in the frame of each relief sample."""
     total = np.zeros(3)
     for n in normals:
         t = unit(np.array([1.0, 0.0, 0.0]) - n[0] * n)
@@ -90,7 +76,7 @@ def expected(appearance: Appearance, normals, v, l):
 
 @pytest.mark.parametrize("name", ["black-leather", "suede"])
 @pytest.mark.parametrize("deviation", [0.0, 0.1, 0.25])
-def test_facets_reflect_the_mean_of_their_brdf(name, deviation):
+def test_a_relief_reflects_the_mean_of_its_brdf(name, deviation):
     rng = np.random.default_rng(3)
     appearance = replace(read_material(name).appearance, texture="none", texture_depth=0.0)
     for _ in range(20):
@@ -103,37 +89,41 @@ def test_facets_reflect_the_mean_of_their_brdf(name, deviation):
         assert got == pytest.approx(want, rel=2e-3 if deviation == 0 else 1e-2)
 
 
-def points_looked_at(factor, q, count):
-    """Points (count, 2) of a light's disc at which the facets of sample q look."""
-    lights, facets = (
-        pack_lights(Rig(name="r", lights=(), ambient=1.0), factor),
-        np.empty(ROOM),
-    )
-    look_at_discs(lights, q, facets, count)
-    return np.column_stack([facets[DISC_X : DISC_X + count], facets[DISC_Y : DISC_Y + count]])
+def points_looked_at(factor, code, size):
+    """Points (size, 2) of a light's disc at which the relief samples of a sample look."""
+    lights = pack_lights(Rig(name="r", lights=(), ambient=1.0), factor)
+    relief = empty_relief(size)
+    look_at_discs(lights, code, relief)
+    return np.column_stack([relief.rows[name][:size] for name in ("disc_x", "disc_y")])
 
 
 @pytest.mark.parametrize(
-    ("factor", "samples", "count"),
-    [(2, (-3,), 4), (2, (-3,), 16), (2, (-1, -2), 4), (2, range(4), 1), (4, range(16), 4)],
+    ("factor", "codes", "size"),
+    [
+        (2, (WHOLE,), 4),
+        (2, (WHOLE,), 16),
+        (2, (FIRST_HALF, SECOND_HALF), 4),
+        (2, range(4), 1),
+        (4, range(16), 4),
+    ],
 )
-def test_the_facets_of_a_pixel_look_at_all_points_of_a_disc_as_often(factor, samples, count):
-    seen = np.concatenate([points_looked_at(factor, q, count) for q in samples])
+def test_the_relief_of_a_pixel_looks_at_all_points_of_a_disc_as_often(factor, codes, size):
+    seen = np.concatenate([points_looked_at(factor, code, size) for code in codes])
     points = pack_lights(Rig(name="r", lights=(), ambient=1.0), factor).disc
     often = [np.isclose(seen, p).all(axis=1).sum() for p in points]
     assert sum(often) == len(seen)
     assert len(set(often)) == 1
 
 
-def test_rows_have_room_for_the_most_facets():
-    assert MOST * MOST <= NOV - Z
+def test_rows_have_room_for_the_most_relief_samples():
+    assert empty_relief(0).rows["NoV"].size >= MOST * MOST
     with pytest.raises(InputError, match="1 to 8"):
-        Quality(factor=1, rays=0, strata=0, facets=MOST + 1, bounces=0, error=1.0)
-    Quality(factor=1, rays=0, strata=0, facets=MOST, bounces=0, error=1.0)
+        Quality(factor=1, rays=0, strata=0, relief=MOST + 1, bounces=0, error=1.0)
+    Quality(factor=1, rays=0, strata=0, relief=MOST, bounces=0, error=1.0)
 
 
 def test_relief_is_dark_where_the_light_has_set_behind_the_surface():
-    """Mean of the cosine over the part of a band that both surface and facet see."""
+    """Mean of the cosine over the part of a band that both surface and relief see."""
     w = 0.866 * 0.1
     x = np.linspace(-w, w, 20001)
     for cosine, smooth in ((0.3, 0.02), (0.05, -0.03), (-0.02, 0.04), (0.4, 0.5), (0.2, -0.2)):
@@ -154,8 +144,8 @@ def seen_half_vectors(alpha, v, n):
 
 
 @pytest.mark.parametrize("alpha", [0.09, 0.16, 0.49, 0.81])
-def test_what_tilted_facets_mirror_below_the_surface_is_lost(alpha):
-    """Share of a facet's own lobe that goes above the surface, against sampled half-vectors."""
+def test_what_a_tilted_relief_mirrors_below_the_surface_is_lost(alpha):
+    """Share of a tilted lobe that goes above the surface, against sampled half-vectors."""
     off = []
     for MoV in (0.1, 0.2, 0.35, 0.6, 0.9):
         v = np.array([np.sqrt(1 - MoV**2), 0.0, MoV])

@@ -1,4 +1,4 @@
-"""The checker: squares of the size that is asked for, and stretched with the cover."""
+"""The checker: squares of the wanted size, and stretched with the cover."""
 
 import numpy as np
 import pytest

@@ -7,8 +7,8 @@ import pytest
 
 from seatlook.errors import RenderError
 from seatlook.model.colour import srgb_encode
-from seatlook.pbr import sketch
-from seatlook.pbr.maps.preview import _CLAY, _LIGHT, _PAPER, _SKY
+from seatlook.pbr import render_preview
+from seatlook.pbr.maps.preview import _LIGHT, _PAPER, _SKY, _TINTS
 from support.reference.lit_sheets import above, flat, sheet
 
 pytestmark = pytest.mark.render
@@ -17,18 +17,18 @@ CAMERA = above(size=(160, 120), fov=20)
 
 def test_level_sheet_takes_the_cosine_of_the_light():
     solution = sheet(flat, steps=8, panels=2)
-    picture = sketch(solution, camera=CAMERA)
+    picture = render_preview(solution, camera=CAMERA)
     cosine = _LIGHT[2] / np.linalg.norm(_LIGHT)
-    expected = 255 * srgb_encode(_CLAY[:2] * (_SKY + (1 - _SKY) * cosine))
-    found = np.stack([picture[60, 60], picture[60, 100]]).astype(float)
-    assert np.abs(np.sort(found, axis=0) - np.sort(expected, axis=0)).max() <= 1
+    expected = 255 * srgb_encode(_TINTS[:2] * (_SKY + (1 - _SKY) * cosine))
+    shown = np.stack([picture[60, 60], picture[60, 100]]).astype(float)
+    assert np.abs(np.sort(shown, axis=0) - np.sort(expected, axis=0)).max() <= 1
     assert np.abs(picture[2, 2].astype(float) - 255 * srgb_encode(np.array(_PAPER))).max() <= 1
 
 
 def test_slopes_towards_the_light_are_brighter():
     """A ridge along y: the camera's left side, where the light stands, against its right."""
     solution = sheet(lambda x, y: 0.02 * np.cos(x / 0.03) + 0 * y, steps=24)
-    row = sketch(solution, camera=CAMERA)[60].astype(float).sum(axis=1)
+    row = render_preview(solution, camera=CAMERA)[60].astype(float).sum(axis=1)
     covered = np.flatnonzero(np.abs(row - row[0]) > 30)
     middle = (covered[0] + covered[-1]) // 2
     assert row[middle - 12] > 1.2 * row[middle + 12]
@@ -37,4 +37,4 @@ def test_slopes_towards_the_light_are_brighter():
 def test_nothing_in_the_picture_is_an_error():
     away = dataclasses.replace(CAMERA, target=2 * CAMERA.position - CAMERA.target)
     with pytest.raises(RenderError, match="nothing is in the picture"):
-        sketch(sheet(flat, steps=4), camera=away)
+        render_preview(sheet(flat, steps=4), camera=away)

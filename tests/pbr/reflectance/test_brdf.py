@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from seatlook.model import Appearance
 from seatlook.pbr.kernels import brdf as kernel
-from seatlook.pbr.kernels.lookup import lookup_mean
-from seatlook.pbr.kernels.tables import coupling, fibres
+from seatlook.pbr.kernels import lobes
 from seatlook.pbr.reflectance import brdf
 from seatlook.pbr.reflectance.tables import (
     compute_tables,
@@ -18,8 +17,8 @@ from seatlook.pbr.reflectance.tables import (
     load_tables,
     roughness_nodes,
 )
-from seatlook.pbr.shading.studio import NAP_NODES, pack_materials
-from support.reference.furnace import reflected
+from seatlook.pbr.shading.look import pack_materials
+from support.reference.furnace import reflected, reflector_of
 
 WHITE = np.ones(3)
 COSINES = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
@@ -109,18 +108,9 @@ def test_reciprocal(appearance, anisotropy):
 
 
 def compiled(appearance, v, l):
-    tables, material = load_tables(), pack_materials([appearance])
-    row = np.empty((1, len(tables.scale_mean)))
-    coupling(tables, material, row)
-    nap = np.empty((1, NAP_NODES))
-    fibres(tables, material, nap)
     out = np.empty((len(v), 3))
     for i in range(len(v)):
-        seen = kernel.view_of(
-            tables, material[0], appearance.roughness, tuple(appearance.albedo), *v[i]
-        )
-        mean = lookup_mean(row[0], seen.table_roughness)
-        kernel.brdf(tables, material[0], nap[0], mean, seen, 0.0, *l[i], out[i])
+        kernel.brdf(load_tables(), reflector_of(appearance, v[i]), 0.0, *l[i], out[i])
     return out
 
 
@@ -132,7 +122,7 @@ def test_compiled_terms_are_the_array_terms(appearance, anisotropy):
         anisotropy=anisotropy,
     )
     v, l = directions(40, 3), directions(40, 4)
-    # Compiled, mean and nap are interpolated; the arrays are integrals and formulas.
+    # Compiled, mean and sheen are interpolated; the arrays are integrals and formulas.
     assert np.allclose(compiled(a, v, l), brdf.evaluate(a, v, l), rtol=1e-3, atol=1e-5)
 
 
@@ -175,7 +165,7 @@ def test_charlie_is_held_below_one():
 
 
 def test_ggx_is_a_distribution():
-    """The visible area of all facets is 1 (Walter et al. 2007, eq. 4), anisotropic or not."""
+    """The visible area of all microfacets is 1 (Walter et al. 2007, eq. 4), anisotropic or not."""
     s = (np.arange(2000) + 0.5) / 2000
     phi = 2 * np.pi * (np.arange(200) + 0.5) / 200
     mu, f = np.meshgrid(s, phi, indexing="ij")
@@ -195,15 +185,15 @@ def test_lobe_over_a_small_spread_is_the_mean_of_lobes(alpha):
     weight = np.outer(w, w).ravel() / w.sum() ** 2
     n = np.column_stack([-tilt, np.ones(len(tilt))])
     n /= np.linalg.norm(n, axis=1, keepdims=True)
-    lobe, bare = kernel.lobe_of(alpha, more), kernel.lobe_of(alpha, 0.0)
+    lobe, bare = lobes.lobe_of(alpha, more), lobes.lobe_of(alpha, 0.0)
     for slope in (0.0, 0.5, 1.0, 2.0, 5.0):
         h = np.array([slope * alpha, 0.0, 1.0]) / np.hypot(1.0, slope * alpha)
-        want = sum(q * kernel.GGX(bare, 1.0, 1.0, c) for q, c in zip(weight, n @ h, strict=True))
-        assert kernel.GGX(lobe, 1.0, 1.0, h[2]) == pytest.approx(want, rel=0.02)
+        want = sum(q * lobes.GGX(bare, 1.0, 1.0, c) for q, c in zip(weight, n @ h, strict=True))
+        assert lobes.GGX(lobe, 1.0, 1.0, h[2]) == pytest.approx(want, rel=0.02)
 
 
 def test_a_spread_lobe_keeps_its_light():
     mu = (np.arange(20_000) + 0.5) / 20_000
-    lobe = kernel.lobe_of(0.3, 0.05)
-    area = sum(4 * kernel.GGX(lobe, 1.0, 1.0, c) * c for c in mu) * 2 * np.pi / len(mu)
+    lobe = lobes.lobe_of(0.3, 0.05)
+    area = sum(4 * lobes.GGX(lobe, 1.0, 1.0, c) * c for c in mu) * 2 * np.pi / len(mu)
     assert area == pytest.approx(1.0, rel=2e-3)

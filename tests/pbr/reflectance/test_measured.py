@@ -12,7 +12,8 @@ from seatlook.model import Appearance, Rig, TextureMaps, sun
 from seatlook.model.colour import srgb_decode
 from seatlook.pbr.kernels.measured import measured
 from seatlook.pbr.reflectance.measured import load_maps, mean_albedo
-from seatlook.pbr.shading.studio import Studio, pack_materials
+from seatlook.pbr.shading.look import pack_materials
+from seatlook.pbr.shading.studio import Studio
 from support.reference.lit_sheets import above, flat, sheet
 
 FINE = 1e-6

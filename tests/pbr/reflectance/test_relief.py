@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from seatlook.model import Appearance, TextureMaps
-from seatlook.pbr.kernels.grain import bilinear, fetch_bilinear, grain
+from seatlook.pbr.kernels.grain import bilinear, grain, prefetch_bilinear
 from seatlook.pbr.kernels.measured import measured
 from seatlook.pbr.reflectance.measured import load_maps
 from seatlook.pbr.reflectance.relief import MAPS, baked, load_textures, texture_index
-from seatlook.pbr.shading.studio import pack_materials
+from seatlook.pbr.shading.look import pack_materials
 
 
 def look(name, **change):
@@ -145,5 +145,5 @@ def test_reading_ahead_changes_nothing_wherever_it_looks(textures):
     before = bilinear(texels, textures, 0, 0.3, 0.7)
     for u, v in ((0.0, 0.0), (-3.2, 1e6), (0.999999, 0.999999)):
         for level in (0, len(textures.start) - 1):
-            fetch_bilinear(texels, textures, level, u, v)
+            prefetch_bilinear(texels, textures, level, u, v)
     assert bilinear(texels, textures, 0, 0.3, 0.7) == before

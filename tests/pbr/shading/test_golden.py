@@ -73,9 +73,9 @@ def compare(name, content):
     path = GOLDEN / f"{name}.png"
     if os.environ.get("SEATLOOK_REGENERATE_GOLDEN"):
         path.write_bytes(content)
-    got, kept = (np.asarray(Pillow.open(f)).astype(int) for f in (io.BytesIO(content), path))
-    assert got.shape == kept.shape
-    difference = np.abs(got - kept).max(axis=2)
+    picture, golden = (np.asarray(Pillow.open(f)).astype(int) for f in (io.BytesIO(content), path))
+    assert picture.shape == golden.shape
+    difference = np.abs(picture - golden).max(axis=2)
     # Another processor may round a ray at an edge to its other side: few pixels, not the mean.
     assert difference.mean() < 0.2, f"mean difference {difference.mean():.3f} of 255"
     assert (difference > 3).mean() < 0.005, f"{(difference > 3).sum()} pixels differ"

@@ -17,7 +17,7 @@ from seatlook.pbr.shading.studio import Studio
 from support.reference.lit_sheets import above, sheet
 
 PICTURES, WARM = 500, 60
-# What the process may hold more at the end than once everything kept is full [MB], by the trend
+# What the process may hold more at the end than once the cache is full [MB], by the trend
 # of all pictures, and in all: the allocator takes two or three more in one step, now and then.
 GROWTH, STEP = 2.0, 8.0
 CODE = """
@@ -96,9 +96,9 @@ def test_a_studio_goes_at_once_with_all_it_kept():
     gc.disable()
     try:
         studio = used()
-        gone, kept = weakref.ref(studio), weakref.ref(studio._kept)
+        owner, cache = weakref.ref(studio), weakref.ref(studio._cache)
         del studio
-        assert gone() is None
-        assert kept() is None
+        assert owner() is None
+        assert cache() is None
     finally:
         gc.enable()

@@ -69,7 +69,7 @@ def test_inverse_square_and_linear_in_power(card):
         Appearance(albedo=np.ones(3), roughness=0.9, sheen=np.ones(3)),
         Appearance(albedo=np.ones(3), roughness=0.5, coat=1.0),
     ],
-    ids=["dielectric", "metal", "nap", "coat"],
+    ids=["dielectric", "metal", "sheen", "coat"],
 )
 def test_white_dome_under_a_constant_sky_vanishes(appearance):
     """A convex white body in a white furnace looks like the furnace, to the loss allowed."""

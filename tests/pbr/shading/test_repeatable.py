@@ -26,11 +26,11 @@ print(hashlib.sha256(image.radiance.tobytes()).hexdigest())
 """
 
 
-def drawn(first="", *, asked="", **environment):
-    """Hash of a picture made by another process, or what it was ``asked`` to print."""
+def drawn(first="", *, code="", **environment):
+    """Hash of a picture made by another process, or what other ``code`` prints."""
     load = "from seatlook.pbr import offscreen_backend"
     done = subprocess.run(
-        [sys.executable, "-c", "\n".join([first, load, asked or DRAW])],
+        [sys.executable, "-c", "\n".join([first, load, code or DRAW])],
         env={**os.environ, "PYTHONPATH": str(TESTS), **environment},
         capture_output=True,
         text=True,
@@ -59,6 +59,6 @@ def loads(library):
 )
 def test_egl_or_osmesa():
     osmesa = "from seatlook.pbr import backend; backend._egl = backend._system_osmesa"
-    names = [drawn(first, asked="print(offscreen_backend().window)") for first in ("", osmesa)]
+    names = [drawn(first, code="print(offscreen_backend().window)") for first in ("", osmesa)]
     assert names == ["vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow"]
     assert drawn() == drawn(osmesa)

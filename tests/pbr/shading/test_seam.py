@@ -9,7 +9,7 @@ import pytest
 
 from seatlook.errors import InputError
 from seatlook.model import Points, Rig, Stitching, Thread, sun
-from seatlook.pbr.kernels.stitch import relief
+from seatlook.pbr.kernels.stitch import seam_relief
 from seatlook.pbr.shading.seam import pack_thread
 from seatlook.pbr.shading.studio import Studio
 from seatlook.pbr.shading.surface import drawn_surface
@@ -79,17 +79,17 @@ def test_unsewn_cover_has_no_allowance():
 
 def test_relief_of_thread_groove_and_hole():
     fine = 1e-5
-    middle = relief(TOP_STITCH, TOP_STITCH.offset, 0.5 * TOP_STITCH.pitch, fine)
+    middle = seam_relief(TOP_STITCH, TOP_STITCH.offset, 0.5 * TOP_STITCH.pitch, fine)
     assert middle[3] == 1.0
     assert middle[0] == pytest.approx(0.0, abs=1e-9)
-    side = relief(TOP_STITCH, TOP_STITCH.offset + 0.0003, 0.5 * TOP_STITCH.pitch, fine)
+    side = seam_relief(TOP_STITCH, TOP_STITCH.offset + 0.0003, 0.5 * TOP_STITCH.pitch, fine)
     assert side[0] < -0.5  # falls away from the middle of the thread
-    hole = relief(TOP_STITCH, TOP_STITCH.offset, 0.0, fine)
+    hole = seam_relief(TOP_STITCH, TOP_STITCH.offset, 0.0, fine)
     assert hole[3] == 0.0
     assert hole[2] < 0.5
-    into = relief(TOP_STITCH, 0.0, 0.5 * TOP_STITCH.pitch, fine)
+    into = seam_relief(TOP_STITCH, 0.0, 0.5 * TOP_STITCH.pitch, fine)
     assert into[0] > 0.5  # rises away from the seam
-    far = relief(TOP_STITCH, 0.0135, 0.5 * TOP_STITCH.pitch, fine)
+    far = seam_relief(TOP_STITCH, 0.0135, 0.5 * TOP_STITCH.pitch, fine)
     assert abs(far[0]) < 1e-4
     assert far[2] == pytest.approx(1.0, abs=1e-6)
 
@@ -123,8 +123,9 @@ def test_thread_has_its_own_colour():
 
 def test_plain_seam_has_neither_stitch_nor_hole():
     assert seen_thread(width=0.0) == pytest.approx(np.ones(3), rel=0.01)
+    plain = pack_thread(Thread(width=0.0))
     for along in (0.0, 0.0025):
-        away, onward, share, covered = relief(pack_thread(Thread(width=0.0)), 0.005, along, 1e-5)
+        away, onward, share, covered = seam_relief(plain, 0.005, along, 1e-5)
         assert (onward, covered) == (0.0, 0.0)
         assert share == pytest.approx(1.0, abs=1e-3)
         assert away < 0.02

@@ -5,11 +5,21 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from seatlook.pbr.kernels.brdf import D_GGX, brdf, view_of
-from seatlook.pbr.kernels.lookup import lookup_mean
-from seatlook.pbr.kernels.tables import coupling, fibres
+from seatlook.pbr.kernels.brdf import Reflector, brdf, view_of
+from seatlook.pbr.kernels.lobes import D_GGX
+from seatlook.pbr.kernels.tables import coupling_at
 from seatlook.pbr.reflectance.tables import load_tables
-from seatlook.pbr.shading.studio import NAP_NODES, pack_materials
+from seatlook.pbr.shading.look import pack_materials, tabulated
+
+
+def reflector_of(appearance, v):
+    """Return a plain surface as the kernels take it, seen along ``v`` (3,) in its own frame."""
+    materials = pack_materials([appearance])
+    couplings, layers, fibres = tabulated(materials)
+    colour = tuple(appearance.albedo)
+    view = view_of(load_tables(), materials[0], appearance.roughness, colour, *v)
+    mean = coupling_at(couplings[0], view.table_roughness)
+    return Reflector(materials[0], layers[0], fibres[0], mean, view)
 
 
 def reflected(appearance, v, n=256):
@@ -18,23 +28,18 @@ def reflected(appearance, v, n=256):
     Half of the nodes are spread evenly over the light's hemisphere, half over the half-vector's
     narrowest GGX lobe; the balance heuristic weighs them (Veach 1995).
     """
-    tables, material = load_tables(), pack_materials([appearance])
-    row, nap = np.empty((1, len(tables.scale_mean))), np.empty((1, NAP_NODES))
-    coupling(tables, material, row)
-    fibres(tables, material, nap)
-    seen = view_of(tables, material[0], appearance.roughness, tuple(appearance.albedo), *v)
-    alpha = min(seen.alpha_x, seen.alpha_y)
+    reflector = reflector_of(appearance, v)
+    alpha = min(reflector.sight.alpha_x, reflector.sight.alpha_y)
     if appearance.coat > 0:
         alpha = min(alpha, appearance.coat_roughness**2)
     total = np.zeros(3)
-    mean = lookup_mean(row[0], seen.table_roughness)
-    _quadrature(tables, material, nap[0], mean, seen, alpha, n, total)
+    _quadrature(load_tables(), reflector, alpha, n, total)
     return total
 
 
 @njit(cache=True)
-def _quadrature(tables, materials, nap, mean, seen, alpha, n, total):
-    f = np.zeros(3)
+def _quadrature(tables, reflector, alpha, n, total):
+    f, seen = np.zeros(3), reflector.sight
     vx, vy, vz = seen.ToV, seen.BoV, seen.NoV
     for i in range(n):
         a = (i + 0.5) / n
@@ -56,6 +61,6 @@ def _quadrature(tables, materials, nap, mean, seen, alpha, n, total):
                 hx, hy, hz = hx * s, hy * s, hz * s
                 VoH = max(hx * vx + hy * vy + hz * vz, 1e-12)
                 density = z / np.pi + D_GGX(alpha, alpha, hx, hy, hz) * hz / (4 * VoH)
-                brdf(tables, materials[0], nap, mean, seen, 0.0, x, y, z, f)
+                brdf(tables, reflector, 0.0, x, y, z, f)
                 for k in range(3):
                     total[k] += f[k] * z / density / (n * n)

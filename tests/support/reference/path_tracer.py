@@ -164,9 +164,9 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
     multiple = brdf.F_multiple(f0, f90, mean)
     coat_multiple = float(brdf.F_multiple(np.full(1, COAT_F0), np.ones(1), coat_mean)[0])
     coat = brdf.coat_share(a)
-    nap = float(a.sheen.max()) * (1 - a.metalness)
+    sheen = float(a.sheen.max()) * (1 - a.metalness)
     tilted = np.array([0.6, 0.0, 0.8])
-    nap_norm = float(brdf.sheen(a, tilted, tilted)) / _bare_sheen(a.sheen_roughness**2, 0.8)
+    sheen_norm = float(brdf.sheen(a, tilted, tilted)) / _bare_sheen(a.sheen_roughness**2, 0.8)
     lobes = [alpha, a.coat_roughness**2] if coat > 0 else [alpha]
 
     class Layered(mi.BSDF):
@@ -216,12 +216,12 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
             single = _ggx(alpha, noh, v.z, l.z)
             again = c("lost", v.z) * c("lost", l.z) / (np.pi * (1 - mean))
             specular = schlick * single + mi.Color3f(multiple.tolist()) * again
-            out = dr.minimum(c("nap", v.z), c("nap", l.z)) * specular
+            out = dr.minimum(c("below", v.z), c("below", l.z)) * specular
             out += (1 - a.metalness) * colour * c("base", v.z) * c("base", l.z)
-            if nap > 0:
+            if sheen > 0:
                 s = 1 / a.sheen_roughness**2
                 lobe = (2 + s) * dr.power(dr.maximum(1 - noh * noh, 1e-12), s / 2) / (2 * np.pi)
-                lobe *= nap_norm / (4 * (l.z + v.z - l.z * v.z))
+                lobe *= sheen_norm / (4 * (l.z + v.z - l.z * v.z))
                 out += (
                     dr.minimum(c("coat", v.z), c("coat", l.z))
                     * (1 - a.metalness)
@@ -312,10 +312,10 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
 def _curves(a: Appearance) -> dict[str, np.ndarray]:
     """What each layer lets through and loses over sqrt(mu); ``base`` with its own mean."""
     mu = np.linspace(0, 1, _NODES) ** 2
-    coat, nap, base = brdf.passed(a, mu)
+    coat, below, base = brdf.passed(a, mu)
     return {
         "coat": coat,
-        "nap": nap,
+        "below": below,
         "base": base / np.sqrt(np.pi * brdf.coupling(a)),
         "lost": brdf.E_lost(a.roughness, mu),
         "coat_lost": brdf.E_lost(a.coat_roughness, mu),

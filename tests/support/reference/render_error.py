@@ -19,7 +19,7 @@ from seatlook.model.colour import srgb_encode
 from seatlook.pbr.kernels.grain import stroke
 from seatlook.pbr.light.rig import LUMINANCE, white_of
 from seatlook.pbr.reflectance.relief import load_textures
-from seatlook.pbr.shading.studio import pack_materials
+from seatlook.pbr.shading.look import pack_materials
 from support.reference.lit_sheets import sheet
 from support.reference.path_tracer import Relief
 
@@ -96,25 +96,25 @@ def compare(
     """Difference of two radiances (h, w, 3) over the pixels with ``cover`` 1."""
     from flip_evaluator import evaluate
 
-    mine = cover == 1.0
+    covered = cover == 1.0
     reference, picture = reference / white_of(rig), picture / white_of(rig)
-    gain = 0.18 / np.median((reference @ LUMINANCE)[mine])
+    gain = 0.18 / np.median((reference @ LUMINANCE)[covered])
     shown = [
-        srgb_encode(np.clip(np.where(mine[..., None], gain * x, 0.18), 0, 1)).astype(np.float32)
+        srgb_encode(np.clip(np.where(covered[..., None], gain * x, 0.18), 0, 1)).astype(np.float32)
         for x in (reference, picture)
     ]
     errors, _, _ = evaluate(*shown, "LDR", applyMagma=False, parameters={"ppd": 67.0})
-    errors = np.asarray(errors).reshape(*mine.shape, -1)[..., 0]
-    return Difference(float(errors[mine].mean()), block_error(reference, picture, mine))
+    errors = np.asarray(errors).reshape(*covered.shape, -1)[..., 0]
+    return Difference(float(errors[covered].mean()), block_error(reference, picture, covered))
 
 
-def block_error(reference: np.ndarray, picture: np.ndarray, mine: np.ndarray) -> float:
+def block_error(reference: np.ndarray, picture: np.ndarray, covered: np.ndarray) -> float:
     """Mean |difference| of the 8 x 8 blocks that lie wholly on the object, over their mean."""
-    h, w = (8 * (n // 8) for n in mine.shape)
+    h, w = (8 * (n // 8) for n in covered.shape)
 
     def blocks(x):
         return x[:h, :w].reshape(h // 8, 8, w // 8, 8).mean(axis=(1, 3))
 
-    whole = blocks(mine.astype(float)) == 1.0
+    whole = blocks(covered.astype(float)) == 1.0
     a, b = (blocks(x @ LUMINANCE)[whole] for x in (reference, picture))
     return float(np.abs(a - b).mean() / a.mean())

@@ -8,6 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.lobes import (
+    F90,
+    GGX,
+    D_sheen,
+    F_multiple,
+    GGX_stretched,
+    V_Neubelt,
+    lobe_of,
+)
 from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW, bilinear, cell, lookup, lookup_mean
 
 MIN_ALPHA = ROUGHNESS_LOW**2
@@ -51,111 +60,6 @@ class Tables(NamedTuple):
 
 
 @leaf()
-def D_GGX(alpha_x, alpha_y, ToH, BoH, NoH):
-    """Burley 2012, eq. 13: anisotropic GGX; Walter et al. 2007 where both alphas agree."""
-    d = (ToH / alpha_x) ** 2 + (BoH / alpha_y) ** 2 + NoH * NoH
-    return 1.0 / (np.pi * alpha_x * alpha_y * d * d)
-
-
-@leaf()
-def V_SmithGGXCorrelated(alpha_x, alpha_y, ToV, BoV, NoV, ToL, BoL, NoL):
-    """Heitz 2014, eq. 99: height-correlated masking over 4 NoL NoV, with the alpha of D."""
-    view = NoL * np.sqrt((alpha_x * ToV) ** 2 + (alpha_y * BoV) ** 2 + NoV * NoV)
-    light = NoV * np.sqrt((alpha_x * ToL) ** 2 + (alpha_y * BoL) ** 2 + NoL * NoL)
-    return 0.5 / (view + light)
-
-
-@leaf()
-def GGX_stretched(ax, ay, view, ToL, BoL, NoL, ToH, BoH, NoH):
-    """Product of both terms above, seen along ``view``, with one division."""
-    x, y, z = ay * ToH, ax * BoH, ax * ay * NoH
-    d = x * x + y * y + z * z
-    x, y = ax * view.ToV, ay * view.BoV
-    seen = NoL * np.sqrt(x * x + y * y + view.NoV * view.NoV)
-    x, y = ax * ToL, ay * BoL
-    lit = view.NoV * np.sqrt(x * x + y * y + NoL * NoL)
-    both = ax * ay
-    return both * both * both / (2.0 * np.pi * d * d * (seen + lit))
-
-
-class Lobe(NamedTuple):
-    """GGX lobe whose half-vectors are spread: squared width, and strength of what that bends.
-
-    See ``lobe_of``.
-    """
-
-    squared: float
-    bent: float
-
-
-@leaf()
-def lobe_of(alpha, more):
-    """Lobe of width ``alpha`` seen over half-vectors that vary by ``more``, per axis ``more / 2``.
-
-    A GGX lobe that is only wider has brighter tails, in proportion to its squared width; those of
-    a mean over a small disc or facet stay as they are. Exact to first order in ``more``.
-    """
-    a2 = alpha * alpha
-    b2 = a2 + more
-    return Lobe(b2, more * a2 / (b2 * b2))
-
-
-@leaf()
-def GGX(lobe, NoV, NoL, NoH):
-    """The same for a lobe as wide along as across, by the cosines alone."""
-    b2, sine2 = lobe.squared, 1.0 - NoH * NoH
-    inverse = 1.0 / (b2 + (1.0 - b2) * sine2)
-    # Share of the half-vectors that lie closer to the normal.
-    t = sine2 * inverse
-    view = NoL * np.sqrt(b2 + (1.0 - b2) * NoV * NoV)
-    light = NoV * np.sqrt(b2 + (1.0 - b2) * NoL * NoL)
-    bent = 1.0 + lobe.bent * (6.0 * t * (1.0 - t) - 1.0)
-    return bent * b2 * inverse * inverse / (2.0 * np.pi * (view + light))
-
-
-@leaf()
-def F_Schlick(f0, f90, LoH):
-    """Schlick 1994, eq. 15."""
-    m = 1.0 - LoH
-    m2 = m * m
-    return f0 + (f90 - f0) * m2 * m2 * m
-
-
-@leaf()
-def D_Charlie(alpha, NoH):
-    """Estevez and Kulla 2017, eq. 2: inverted Gaussian of fibres that stand up."""
-    inverse = 1.0 / alpha
-    return (2.0 + inverse) * (1.0 - NoH * NoH) ** (0.5 * inverse) / (2.0 * np.pi)
-
-
-@leaf()
-def D_nap(fibres, sine):
-    """Distribution of the nap at the sine of a half-vector, see ``tables.fibres``."""
-    x = sine * (len(fibres) - 1)
-    j = min(int(x), len(fibres) - 2)
-    return fibres[j] + (x - j) * (fibres[j + 1] - fibres[j])
-
-
-@leaf()
-def V_Neubelt(NoV, NoL):
-    """Neubelt and Pettineo 2013: no masking, smooth denominator."""
-    return 1.0 / (4.0 * (NoL + NoV - NoL * NoV))
-
-
-@leaf()
-def F90(f0):
-    """Lagarde and de Rousiers 2014: below 2 % the reflectance is taken for cavities."""
-    return min(1.0, 50.0 * f0)
-
-
-@leaf()
-def F_multiple(f0, f90, mean):
-    """Hill 2018 after Kulla and Conty 2017: colour of light reflected two times or more."""
-    average = f0 + (f90 - f0) / 21.0
-    return average * average * mean / (1.0 - average * (1.0 - mean))
-
-
-@leaf()
 def E_mean(tables, roughness):
     """Hemisphere mean of the albedo of a lobe with F = 1."""
     return lookup_mean(tables.scale_mean, roughness) + lookup_mean(tables.bias_mean, roughness)
@@ -169,7 +73,7 @@ def coat_share(material):
 
 @leaf()
 def sheen_share(material):
-    """Strength of the nap's strongest colour; metal has no nap."""
+    """Strength of the sheen's strongest colour; metal has none."""
     strongest = max(material.sheen[0], material.sheen[1], material.sheen[2])
     return strongest * (1.0 - material.metalness)
 
@@ -197,15 +101,15 @@ class Layers(NamedTuple):
     """What happens to light at one direction.
 
     ``scale, bias``: albedo of the base's lobe; ``coat_lost``: share that the coat's lobe reflects
-    more than once; ``coat, nap, base``: light left below the coat, below coat and nap, and for the
-    diffuse base.
+    more than once; ``coat, sheen, base``: light left below the coat, below coat and sheen, and for
+    the diffuse base.
     """
 
     scale: float
     bias: float
     coat_lost: float
     coat: float
-    nap: float
+    sheen: float
     base: float
 
 
@@ -214,12 +118,12 @@ class Rows(NamedTuple):
 
     base: tuple[int, float]
     coat: tuple[int, float]
-    nap: tuple[int, float]
+    sheen: tuple[int, float]
 
 
 @leaf()
 def rows_of(tables, material, roughness):
-    """Rows for the base's roughness and the material's coat and nap."""
+    """Rows for the base's roughness and the material's coat and sheen."""
     n = tables.scale.shape[0]
     return Rows(
         cell(roughness, ROUGHNESS_LOW, 1.0, n),
@@ -234,7 +138,7 @@ def layers_at(tables, material, rows, means, mu):
     j, b = cell(np.sqrt(mu), 0.0, 1.0, tables.scale.shape[1])
     i, a = rows.base
     scale, bias = bilinear(tables.scale, i, a, j, b), bilinear(tables.bias, i, a, j, b)
-    coat, nap, lost = 1.0, 1.0, 0.0
+    coat, sheen, lost = 1.0, 1.0, 0.0
     share = coat_share(material)
     if share > 0.0:
         i, a = rows.coat
@@ -243,12 +147,12 @@ def layers_at(tables, material, rows, means, mu):
         coat -= share * (COAT_F0 * low + high + means.coat_again * lost)
     share = sheen_share(material)
     if share > 0.0:
-        i, a = rows.nap
-        nap -= share * bilinear(tables.sheen, i, a, j, b)
-    nap *= coat
+        i, a = rows.sheen
+        sheen -= share * bilinear(tables.sheen, i, a, j, b)
+    sheen *= coat
     f0 = material.f0
     reflected = f0 * scale + F90(f0) * bias + means.again * (1.0 - scale - bias)
-    return Layers(scale, bias, lost, coat, nap, nap * (1.0 - reflected))
+    return Layers(scale, bias, lost, coat, sheen, sheen * (1.0 - reflected))
 
 
 @leaf()
@@ -312,44 +216,60 @@ def widened(alpha, more):
     return np.sqrt(alpha * alpha + more) if more > 1e-3 * alpha * alpha else alpha
 
 
+class Reflector(NamedTuple):
+    """A surface point: record and tables of its material, and the sight of it.
+
+    ``layers`` (n, 5), ``fibres`` (n,): see ``tables``; ``coupling``: mean of what reaches the
+    diffuse base at this roughness.
+    """
+
+    material: np.void
+    layers: npt.NDArray[np.float64]
+    fibres: npt.NDArray[np.float64]
+    coupling: float
+    sight: View
+
+
 @leaf()
-def brdf(tables, material, fibres, coupling, view, wider, ToL, BoL, NoL, out):
+def brdf(tables, reflector, wider, ToL, BoL, NoL, out):
     """BRDF [1/sr] into ``out`` (3,); both cosines above 0.
 
-    ``fibres``: the material's, see ``tables``; ``coupling``: mean of what reaches the diffuse base
-    at this roughness; ``wider``: added to the squared width of the lobes, for a light that is not
-    a point.
+    ``wider``: added to the squared width of the lobes, for a light that is not a point.
     """
+    view = reflector.sight
     x, y, z = view.ToV + ToL, view.BoV + BoL, view.NoV + NoL
     inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
     ToH, BoH, NoH = x * inverse, y * inverse, z * inverse
     LoH = min(1.0, ToL * ToH + BoL * BoH + NoL * NoH)
     ax, ay = widened(view.alpha_x, wider), widened(view.alpha_y, wider)
     lobe = GGX_stretched(ax, ay, view, ToL, BoL, NoL, ToH, BoH, NoH)
-    _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, LoH, out)
+    _layered(tables, reflector, wider, lobe, (NoL, NoH, LoH), out)
 
 
 @leaf()
-def brdf_isotropic(tables, material, fibres, coupling, view, wider, NoL, NoH, LoH, out):
+def brdf_isotropic(tables, reflector, wider, NoL, NoH, LoH, out):
     """Same where the lobe is as wide along as across, by the cosines alone."""
+    view = reflector.sight
     lobe = GGX(lobe_of(view.alpha_x, wider), view.NoV, NoL, NoH)
-    _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, LoH, out)
+    _layered(tables, reflector, wider, lobe, (NoL, NoH, LoH), out)
 
 
 @leaf()
-def _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, LoH, out):
+def _layered(tables, reflector, wider, lobe, cosines, out):
+    """All layers, with the base's lobe at hand."""
+    (NoL, NoH, LoH), material, view = cosines, reflector.material, reflector.sight
     here, there = view.layers, layers_at(tables, material, view.rows, view.means, NoL)
     lost = (1.0 - here.scale - here.bias) * (1.0 - there.scale - there.bias)
     lost /= np.pi * (1.0 - view.means.base)
-    diffuse = (1.0 - material.metalness) * here.base * there.base / (np.pi * coupling)
-    nap = min(here.nap, there.nap)
+    diffuse = (1.0 - material.metalness) * here.base * there.base / (np.pi * reflector.coupling)
+    sheen = min(here.sheen, there.sheen)
     m = 1.0 - LoH
     m *= m * m * m * m
     for c in range(3):
         fresnel = view.f0[c] + (view.f90[c] - view.f0[c]) * m
-        out[c] = nap * (fresnel * lobe + view.again[c] * lost) + view.colour[c] * diffuse
+        out[c] = sheen * (fresnel * lobe + view.again[c] * lost) + view.colour[c] * diffuse
     if sheen_share(material) > 0.0:
-        _add_sheen(material, fibres, min(here.coat, there.coat), view.NoV, NoL, NoH, out)
+        _add_sheen(reflector, min(here.coat, there.coat), NoL, NoH, out)
     share = coat_share(material)
     if share > 0.0:
         lobe = GGX(lobe_of(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
@@ -360,8 +280,9 @@ def _layered(tables, material, fibres, coupling, view, wider, lobe, NoL, NoH, Lo
 
 
 @leaf()
-def _add_sheen(material, fibres, share, NoV, NoL, NoH, out):
-    lobe = D_nap(fibres, np.sqrt(max(0.0, 1.0 - NoH * NoH))) * V_Neubelt(NoV, NoL)
+def _add_sheen(reflector, share, NoL, NoH, out):
+    material, sine = reflector.material, np.sqrt(max(0.0, 1.0 - NoH * NoH))
+    lobe = D_sheen(reflector.fibres, sine) * V_Neubelt(reflector.sight.NoV, NoL)
     lobe *= share * (1.0 - material.metalness)
     for c in range(3):
         out[c] += material.sheen[c] * lobe
@@ -371,7 +292,7 @@ def _add_sheen(material, fibres, share, NoV, NoL, NoH, out):
 def albedo_towards(tables, material, view, specular, diffuse):
     """Share of a light equal from everywhere that leaves towards the view.
 
-    Into ``specular`` (3,): by the base's lobe; into ``diffuse`` (3,): by nap and diffuse base.
+    Into ``specular`` (3,): by the base's lobe; into ``diffuse`` (3,): by sheen and diffuse base.
     Returns the coat's share.
     """
     here, metal, sheen = view.layers, material.metalness, 0.0
@@ -381,6 +302,6 @@ def albedo_towards(tables, material, view, specular, diffuse):
     lost = 1.0 - here.scale - here.bias
     for c in range(3):
         lobe = view.f0[c] * here.scale + view.f90[c] * here.bias + view.again[c] * lost
-        specular[c] = here.nap * lobe
+        specular[c] = here.sheen * lobe
         diffuse[c] = (1.0 - metal) * view.colour[c] * here.base + sheen * material.sheen[c]
     return 1.0 - here.coat

@@ -1,4 +1,4 @@
-"""Pixels whose four samples are alike, so that fewer are enough."""
+"""Coherent pixels: their four samples see the same, so that fewer are enough."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from numba import njit
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.surface import blend, dot, meet, ray_through, row, unit
 
+# What a sample of such a pixel stands for; a number from 0 on is that of a sample in its pixel.
+FIRST_HALF, SECOND_HALF, WHOLE = -1, -2, -3
 # Cosine between normals of neighbouring samples that count as one: 2 degrees.
 _UNBENT = 0.9994
 
@@ -30,7 +32,7 @@ def _unbent(mesh, eye, ids, x, y, i, j):
 
 
 @leaf()
-def _alike(mesh, eye, ids, visibility, reach, x, y):
+def _is_coherent(mesh, eye, ids, visibility, reach, x, y):
     """Whether the 2 x 2 samples from (x, y) see one panel, unbent, equally lit, no seam."""
     f = ids[y, x]
     if f < 0:
@@ -52,12 +54,12 @@ def _alike(mesh, eye, ids, visibility, reach, x, y):
 
 
 @njit(cache=True)
-def alike(mesh, eye, ids, visibility, reach, out):
-    """Whether all samples of a pixel are as good as one, into ``out`` (h, w).
+def find_coherent(mesh, eye, ids, visibility, reach, out):
+    """Whether a pixel is coherent, into ``out`` (h, w).
 
     ``ids`` (2 h, 2 w) and ``visibility`` (k, 2 h, 2 w) as for ``shade``; ``reach`` [m]: how far
     from a seam something of it is to be seen.
     """
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
-            out[y, x] = _alike(mesh, eye, ids, visibility, reach, 2 * x, 2 * y)
+            out[y, x] = _is_coherent(mesh, eye, ids, visibility, reach, 2 * x, 2 * y)

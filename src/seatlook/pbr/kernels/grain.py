@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.noise import smooth
-from seatlook.pbr.kernels.prefetch import fetch
+from seatlook.pbr.kernels.prefetch import prefetch_row
 
 
 class Textures(NamedTuple):
@@ -26,7 +26,7 @@ class Textures(NamedTuple):
     cells: float
 
 
-# Order of the maps, and share of the colour by which a stroke of the hand changes the nap.
+# Order of the maps, and share of the colour by which a stroke of the hand changes suede.
 LEATHER, SUEDE, WEAVE = 0, 1, 2
 _STROKE = 0.035
 # Texels are as wide as this share of a sample: the levels' own filter is wider than a box, and the
@@ -60,16 +60,16 @@ def bilinear(t, textures, level, u, v):
 
 
 @leaf()
-def fetch_bilinear(t, textures, level, u, v):
+def prefetch_bilinear(t, textures, level, u, v):
     """Begin to read what ``bilinear`` will."""
     n = textures.size >> level
     i, j = int(np.floor(u * n - 0.5)), int(np.floor(v * n - 0.5))
     base, column, right = textures.start[level], i & (n - 1), (i + 1) & (n - 1)
     top, low = base + (j & (n - 1)) * n, base + ((j + 1) & (n - 1)) * n
-    fetch(t, top + column)  # type: ignore[call-arg]
-    fetch(t, low + column)
-    fetch(t, top + right)
-    fetch(t, low + right)
+    prefetch_row(t, top + column)  # type: ignore[call-arg]
+    prefetch_row(t, low + column)
+    prefetch_row(t, top + right)
+    prefetch_row(t, low + right)
 
 
 @leaf()
@@ -103,7 +103,7 @@ def filtered(t, textures, material, u, v, width):
 
 @leaf()
 def stroke(material, u, v):
-    """Share of the colour left by marks of the hand: suede's nap lies this way or that.
+    """Share of the colour left by marks of the hand: suede's fibres lie this way or that.
 
     They change the tone and not the normal: a slope over a few centimetres would be taken for a
     wrinkle.

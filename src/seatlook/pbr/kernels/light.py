@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.coherent import FIRST_HALF, WHOLE
 from seatlook.pbr.kernels.surface import along, cross, dot, minus, row, unit
 
 # Angular radius [rad] below which a light is a point for shading.
@@ -28,7 +29,7 @@ class Lights(NamedTuple):
     disc: npt.NDArray[np.float64]
 
 
-class Around(NamedTuple):
+class Indirect(NamedTuple):
     """What arrives from elsewhere, per vertex.
 
     ``diffuse`` (n, 3) [cd/m2]: mean over the half-space, of sky and other faces; ``mirrored``
@@ -114,25 +115,26 @@ def towards_point(disc, x, y):
 
 
 @leaf()
-def parts_of(q, count, points):
-    """At how many of the ``points`` of a light's disc sample q looks, with ``count`` facets.
+def parts_of(code, count, points):
+    """At how many of the ``points`` of a light's disc a sample looks.
 
-    -3 stands for a pixel, -1 and -2 for half of one. Four facets or more share four points among
-    themselves: if all of a sample looked at one, its light would go with its place.
+    ``code``: its number in its pixel or what it stands for, see ``coherent``; ``count``: of its
+    relief samples. Four of these or more share four points among themselves: if all looked at one,
+    the light of the sample would go with its place.
     """
-    if q == -3 or (q >= 0 and count >= 4 and points >= 4):
+    if code == WHOLE or (code >= 0 and count >= 4 and points >= 4):
         return 4
-    return 1 if q >= 0 else 2
+    return 1 if code >= 0 else 2
 
 
 @leaf()
-def point_of(q, part, parts, points):
-    """Point of the light's disc at which one of the parts of sample q looks."""
-    if q >= 0:
-        return (q + part * (points // parts)) % points
-    if q == -3:
+def point_of(code, part, parts, points):
+    """Point of the light's disc at which one of the parts of a sample looks."""
+    if code >= 0:
+        return (code + part * (points // parts)) % points
+    if code == WHOLE:
         return part
-    return 3 * part if q == -1 else 1 + part
+    return 3 * part if code == FIRST_HALF else 1 + part
 
 
 @leaf()

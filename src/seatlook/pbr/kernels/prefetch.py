@@ -1,4 +1,4 @@
-"""Reading ahead: where the next texels lie, the processor cannot guess."""
+"""Prefetch of what is read next: where the next texels lie, the processor cannot guess."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numba.extending import intrinsic
 
 
 @intrinsic
-def fetch(typingctx, table, line):
+def prefetch_row(typingctx, table, line):
     """Begin to read row ``line`` of a table (n, k) into the cache, and do not wait for it."""
 
     def generate(context, builder, signature, arguments):
@@ -21,13 +21,13 @@ def fetch(typingctx, table, line):
         )
         where = builder.bitcast(where, cgutils.voidptr_t)
         number = ir.IntType(32)
-        prefetch = cgutils.get_or_insert_function(
+        instruction = cgutils.get_or_insert_function(
             builder.module,
             ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t, number, number, number]),
             "llvm.prefetch.p0",
         )
         # For reading, into the nearest cache, of data.
-        builder.call(prefetch, [where, number(0), number(3), number(1)])
+        builder.call(instruction, [where, number(0), number(3), number(1)])
         return context.get_dummy_value()
 
     return types.void(table, types.intp), generate

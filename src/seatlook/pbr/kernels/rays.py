@@ -88,7 +88,7 @@ def _start(mesh, eye, f, i, j):
 
 @leaf()
 def _state(bvh, mesh, eye, f, i, j, lights, k, stack):
-    """What one ray from sample (i, j) to the middle of light k tells."""
+    """What one ray from sample (i, j) to the middle of light k meets."""
     p, plane, n = _start(mesh, eye, f, i, j)
     l, far = _to_middle(_disc(lights, k, p))
     angle, c = angle_of(lights, k, p), dot(n, l)
@@ -199,9 +199,9 @@ def _share_seen(bvh, lights, k, start, shift, first, step, total, stack):
 def shadows(bvh, mesh, eye, ids, lights, k, factor, rays, reach, out):
     """Share of light k [1/255] that each sample sees, into ``out`` like ``ids``.
 
-    Where a pixel and its neighbours within ``reach`` agree, one ray tells, and where the rim of the
-    light agrees with its middle, those to it; in a penumbra every sample sends ``rays`` to its own
-    stratified points of the light's disc.
+    Where a pixel and its neighbours within ``reach`` agree, one ray is enough, and where the rim of
+    the light agrees with its middle, those to it; in a penumbra every sample sends ``rays`` to its
+    own stratified points of the light's disc.
     """
     height, width = ids.shape[0] // factor, ids.shape[1] // factor
     state = np.zeros((height, width), np.uint8)
@@ -216,15 +216,15 @@ def shadows(bvh, mesh, eye, ids, lights, k, factor, rays, reach, out):
             edge = edge or (_within(lit, x, y, reach) and _within(dark, x, y, reach))
             shift = (even(x, y, 2 * k), even(x, y, 2 * k + 1))
             # Once per pixel, and not where that takes more rays than it saves.
-            asked = rays * step <= _RIM or not (state[y, x] == _LIT or state[y, x] == _HIDDEN)
+            known = rays * step <= _RIM or not (state[y, x] == _LIT or state[y, x] == _HIDDEN)
             for q in range(step):
                 i, j = x * factor + q % factor, y * factor + q // factor
                 if ids[j, i] < 0:
                     continue
-                if edge and not asked:
+                if edge and not known:
                     start, is_lit = _start(mesh, eye, ids[j, i], i, j), state[y, x] == _LIT
                     edge = not _rim_agrees(bvh, lights, k, start, shift[0], is_lit, stack)
-                asked = True
+                known = True
                 if not edge:
                     out[j, i] = 255 if state[y, x] == _LIT else 0
                     continue

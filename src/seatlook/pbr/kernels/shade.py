@@ -9,8 +9,9 @@ import numpy.typing as npt
 from numba import njit
 
 from seatlook.pbr.kernels import leaf
-from seatlook.pbr.kernels.brdf import Tables, albedo_towards, brdf, brdf_isotropic, view_of
-from seatlook.pbr.kernels.grain import Textures, grain, holes
+from seatlook.pbr.kernels.brdf import Reflector, albedo_towards, brdf, brdf_isotropic, view_of
+from seatlook.pbr.kernels.coherent import FIRST_HALF, SECOND_HALF, WHOLE
+from seatlook.pbr.kernels.detail import detail_of
 from seatlook.pbr.kernels.light import (
     above_horizon,
     angle_of,
@@ -21,254 +22,129 @@ from seatlook.pbr.kernels.light import (
     point_of,
     towards_point,
 )
-from seatlook.pbr.kernels.measured import Measured, measured
-from seatlook.pbr.kernels.relief_light import brdf_facets, look_at_discs
+from seatlook.pbr.kernels.relief_light import brdf_of_relief, look_at_discs
 from seatlook.pbr.kernels.relief_samples import (
-    ROOM,
-    faceted,
-    layers_to_eye,
-    mirrored_facets,
-    spread,
+    RELIEF,
+    Relief,
+    layers_towards,
+    mirrored_by,
+    sampled,
 )
-from seatlook.pbr.kernels.stitch import (
-    Thread,
-    away_from_seam,
-    reach,
-    relief,
-    seam_at,
-    tilt,
-)
-from seatlook.pbr.kernels.surface import (
-    along,
-    blend,
-    cross,
-    dot,
-    meet,
-    meet_plane,
-    ray_through,
-    row_of,
-    unit,
-)
+from seatlook.pbr.kernels.stage import Hit, Sample, frame, place_at, towards_eye
+from seatlook.pbr.kernels.surface import along, dot, meet, meet_plane, ray_through, row_of, unit
 from seatlook.pbr.kernels.tables import coupling_at
 
 # Pixels across the squares in which a picture is shaded.
 _TILE = 16
 
 
-class Look(NamedTuple):
-    """What the surface is made of.
+class Raster(NamedTuple):
+    """What the ``factor`` x ``factor`` samples of each of (h, w) pixels see.
 
-    ``materials`` (p,): records of ``brdf.MATERIAL`` per panel; ``couplings`` (p, k): mean of what
-    reaches their diffuse base, over roughness; ``layers`` (p, n, 5) and ``fibres`` (p, n): see
-    ``tables``; ``changed`` (1,): room for a record of a sample whose metalness is that of a map.
+    ``ids`` (h factor, w factor): face per sample, -1 for none; ``visibility`` (k, h factor,
+    w factor): share of each light, in 1/255; ``coherent`` (h, w): pixels of 2 x 2 samples of which
+    fewer are enough; ``side``: relief samples along each side of a pixel.
     """
 
-    materials: npt.NDArray[np.void]
-    couplings: npt.NDArray[np.float64]
-    layers: npt.NDArray[np.float64]
-    fibres: npt.NDArray[np.float64]
-    tables: Tables
-    textures: Textures
-    maps: Measured
-    changed: npt.NDArray[np.void]
-    thread: Thread
+    ids: npt.NDArray[np.int32]
+    visibility: npt.NDArray[np.uint8]
+    coherent: npt.NDArray[np.bool_]
+    factor: int
+    side: int
 
 
-@leaf()
-def towards_eye(n, v):
-    """Normal bent just enough to face the eye, which interpolated ones at a silhouette do not."""
-    c = dot(n, v)
-    if c >= 0.01:
-        return n
-    return unit(along(n, 0.01 - c, v))
+class Scratch(NamedTuple):
+    """Room for one pixel; nothing in it outlives that.
 
-
-@leaf()
-def frame(n, warp):
-    """Unit warp in the plane of ``n`` and the weft beside it."""
-    t = along(warp, -dot(warp, n), n)
-    if dot(t, t) < 1e-12:
-        t = (n[1], -n[0], 0.0) if abs(n[2]) < 0.9 else (0.0, n[2], -n[1])
-        t = along(t, -dot(t, n), n)
-    t = unit(t)
-    return t, cross(n, t)
-
-
-@leaf()
-def _blend_one(values, faces, f, b1, b2):
-    """Value of a vertex table (n,) inside face f."""
-    i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
-    return (1.0 - b1 - b2) * values[i] + b1 * values[j] + b2 * values[k]
-
-
-@leaf()
-def _pattern_at(mesh, f, b1, b2):
-    """Pattern coordinates inside face f."""
-    i, j, k = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
-    b0 = 1.0 - b1 - b2
-    return (
-        b0 * mesh.uv[i, 0] + b1 * mesh.uv[j, 0] + b2 * mesh.uv[k, 0],
-        b0 * mesh.uv[i, 1] + b1 * mesh.uv[j, 1] + b2 * mesh.uv[k, 1],
-    )
-
-
-class Place(NamedTuple):
-    """Point of the surface as its relief does not change it, seen by all samples of a pixel.
-
-    ``n`` faces the eye along ``v``; ``warp, weft`` lie in the surface; ``diffuse, mirrored, open``
-    as in ``light.Around``.
+    ``total`` (3,): radiance of the pixel; ``work`` (3, 3): that of a sample in the first row;
+    ``visible`` (k,): share of each light that the sample sees; ``material`` (1,): record of one
+    whose metalness is that of a map; ``relief`` (1,): record of ``relief_samples.RELIEF``.
     """
 
-    p: tuple[float, float, float]
-    v: tuple[float, float, float]
-    n: tuple[float, float, float]
-    warp: tuple[float, float, float]
-    weft: tuple[float, float, float]
-    diffuse: tuple[float, float, float]
-    mirrored: tuple[float, float, float]
-    open: float
+    total: npt.NDArray[np.float64]
+    work: npt.NDArray[np.float64]
+    visible: npt.NDArray[np.float64]
+    material: npt.NDArray[np.void]
+    relief: npt.NDArray[np.void]
 
 
 @leaf()
-def _place(mesh, around, f, hit):
-    b1, b2, _, plane, ray, _ = hit
-    v = (-ray[0], -ray[1], -ray[2])
-    n = unit(blend(mesh.normals, mesh.faces, f, b1, b2))
-    if dot(plane, v) < 0.0:
-        n = (-n[0], -n[1], -n[2])
-    n = towards_eye(n, v)
-    warp, weft = frame(n, blend(mesh.warp, mesh.faces, f, b1, b2))
-    return Place(
-        blend(mesh.vertices, mesh.faces, f, b1, b2),
-        v,
-        n,
-        warp,
-        weft,
-        blend(around.diffuse, mesh.faces, f, b1, b2),
-        blend(around.mirrored, mesh.faces, f, b1, b2),
-        _blend_one(around.open, mesh.faces, f, b1, b2),
-    )
-
-
-@leaf()
-def _detail(mesh, look, eye, material, f, hit, place, covers, side, facets):
-    """Normal with relief and thread, base colour, roughness, metalness, light left by the holes.
-
-    With ``covers`` above 0 the relief goes into ``facets``, ``side`` along each side of as many
-    samples; the last two returned add to the squared width of their lobes, and of the lobe of
-    them all.
-    """
-    b1, b2, t, plane, _, between = hit
-    n, v = place.n, place.v
-    roughness, metal, tint = material.roughness, material.metalness, (1.0, 1.0, 1.0)
-    share, own, kept, within, beside = 1.0, 0.0, 1.0, 0.0, 0.0
-    if material.texture >= 0 or material.maps >= 0 or material.perforation_diameter > 0.0:
-        u, w = _pattern_at(mesh, f, b1, b2)
-        width = t * between / np.sqrt(max(0.05, dot(n, v)))
-        su, sv, gu, gv = 0.0, 0.0, 0.0, 0.0
-        if material.maps >= 0:
-            tint, roughness, metal, su, sv = measured(look.maps, material, u, w, width)
-        if material.texture >= 0 and covers == 0:
-            gu, gv, roughness, share = grain(look.textures, material, roughness, u, w, width)
-        if material.texture >= 0 or material.maps >= 0:
-            n = unit(along(along(n, -su - gu, place.warp), -sv - gv, place.weft))
-        if material.perforation_diameter > 0.0:
-            kept = 1.0 - holes(
-                material.perforation_pitch, material.perforation_diameter, u, w, width
-            )
-    distance, arc = seam_at(mesh, f, b1, b2)
-    if distance < reach(look.thread):
-        away, onward = away_from_seam(mesh, f)
-        width = t * between / np.sqrt(max(0.05, abs(dot(plane, v))))
-        sa, so, left, covered = relief(look.thread, distance, arc, width)
-        n = unit(tilt(n, away, onward, sa, so))
-        share *= left
-        own = covered * look.thread.own
-        roughness += covered * max(0.0, 0.6 - roughness)
-    if covers > 0:
-        n, within, beside, grey = spread(
-            mesh, look.textures, eye, material, f, place, n, (u, w), t, covers, side, facets
-        )
-        share *= grey
-    share *= 1.0 - own
-    base, thread = material.albedo, look.thread.colour
-    colour = (
-        base[0] * tint[0] * share + own * thread[0],
-        base[1] * tint[1] * share + own * thread[1],
-        base[2] * tint[2] * share + own * thread[2],
-    )
-    return n, colour, roughness, metal, kept, within, beside
-
-
-@leaf()
-def sample(mesh, look, eye, lights, around, f, hit, place, q, visible, side, work, facets):
-    """Radiance of one sample into ``work[0]``; ``work`` is (3, 3), ``facets`` room for its relief.
-
-    ``hit``: (weight, weight, distance, face normal, unit ray, angle between samples);
-    ``visible`` (k,): share of each light that is not hidden; ``q``: number of the sample in its
-    pixel, -1 or -2 where it is the first or second that stands for two, -3 where it does for four;
-    ``side``: facets along each side of its relief.
-    """
-    panel = mesh.panel[f]
-    material, v, covers, count = look.materials[panel], place.v, 0, 0
-    if faceted(material):
-        covers, count = 2 if q == -3 else 1, side * side
-    bare = _detail(mesh, look, eye, material, f, hit, place, covers, side, facets)
-    n, colour, roughness, metal, kept, within, beside = bare
+def _shade(stage, sample, scratch):
+    """Radiance of one sample into ``scratch.work[0]``."""
+    look, lights, place = stage.look, stage.lights, sample.place
+    panel = stage.mesh.panel[sample.hit.face]
+    material, v, out = look.materials[panel], place.v, scratch.work[0]
+    rows, has_relief = scratch.relief[0], sampled(material)
+    relief = Relief(rows, sample.side * sample.side)
+    detail = detail_of(stage, sample, material, relief, has_relief)
+    roughness, metal = detail.roughness, detail.metalness
     if metal != material.metalness or roughness != material.roughness:
-        count = 0  # of such a sample the layers are not at hand: one lobe shows its relief
+        has_relief = False  # of such a sample the layers are not at hand: one lobe shows its relief
     if metal != material.metalness:
-        look.changed[0] = material
-        look.changed[0].metalness = metal
-        material = look.changed[0]
-    n = towards_eye(n, v)
+        scratch.material[0] = material
+        scratch.material[0].metalness = metal
+        material = scratch.material[0]
+    n = towards_eye(detail.n, v)
     warp, weft = place.warp, place.weft
     if material.anisotropy != 0.0:
         warp, weft = frame(n, warp)
-    out, f_out = work[0], work[1]
-    view = view_of(look.tables, material, roughness, colour, dot(warp, v), dot(weft, v), dot(n, v))
+    x, y, z = dot(warp, v), dot(weft, v), dot(n, v)
+    view = view_of(look.tables, material, roughness, detail.colour, x, y, z)
     mean = coupling_at(look.couplings[panel], view.table_roughness)
-    layers, fibres = look.layers[panel], look.fibres[panel]
+    reflector = Reflector(material, look.layers[panel], look.fibres[panel], mean, view)
     shares = (1.0, 1.0)
-    if count > 0:
-        layers_to_eye(layers, facets, count)
-        shares = mirrored_facets(material, view, facets, count, place.n, within, v)
-        look_at_discs(lights, q, facets, count)
-    _from_around(look, around, place, material, view, beside, n, shares, work)
+    if has_relief:
+        layers_towards(reflector.layers, rows.NoV, relief.size, rows.layers)
+        shares = mirrored_by(reflector, relief, detail.within, place.n, v)
+        look_at_discs(lights, sample.code, relief)
+    _add_indirect(stage, place, reflector, detail.beside, n, shares, scratch.work)
     for k in range(len(lights.near)):
-        if visible[k] <= 0.0:
+        if scratch.visible[k] <= 0.0:
             continue
-        middle, e = arriving(lights, k, place.p)
-        disc = disc_of(lights, angle_of(lights, k, place.p), middle)
-        if count > 0:
-            wide, m = within, place.n
-            brdf_facets(
-                material, layers, fibres, mean, view, facets, count, disc, wide, m, v, f_out
-            )
-            for c in range(3):
-                out[c] += f_out[c] * e[c] * visible[k]
-            continue
-        points = len(lights.disc)
-        parts = parts_of(q, 0, points) if disc.angle > 0.0 else 1
-        for part in range(parts):
-            point = point_of(q, part, parts, points)
-            l, share = towards_point(disc, lights.disc[point, 0], lights.disc[point, 1])
-            NoL = above_horizon(dot(n, l), dot(place.n, l), disc.radius)
-            if NoL <= 1e-5:
-                continue
-            if material.anisotropy == 0.0:
-                h, wide = unit(along(v, 1.0, l)), disc.wider + beside
-                NoH, LoH = min(1.0, dot(n, h)), min(1.0, dot(l, h))
-                brdf_isotropic(
-                    look.tables, material, fibres, mean, view, wide, NoL, NoH, LoH, f_out
-                )
-            else:
-                x, y = dot(warp, l), dot(weft, l)
-                brdf(look.tables, material, fibres, mean, view, disc.wider, x, y, NoL, f_out)
-            for c in range(3):
-                out[c] += f_out[c] * NoL * e[c] * share * visible[k] / parts
+        if has_relief:
+            _add_to_relief(lights, k, place, reflector, relief, detail.within, scratch)
+        else:
+            _add_to_lobe(stage, k, sample, reflector, (n, warp, weft), detail.beside, scratch)
     for c in range(3):
-        out[c] *= kept
+        out[c] *= detail.left
+
+
+@leaf()
+def _add_to_relief(lights, k, place, reflector, relief, within, scratch):
+    """Light k as the samples of a relief reflect it."""
+    out, f_out = scratch.work[0], scratch.work[1]
+    middle, e = arriving(lights, k, place.p)
+    disc = disc_of(lights, angle_of(lights, k, place.p), middle)
+    brdf_of_relief(reflector, relief, disc, within, place.n, place.v, f_out)
+    for c in range(3):
+        out[c] += f_out[c] * e[c] * scratch.visible[k]
+
+
+@leaf()
+def _add_to_lobe(stage, k, sample, reflector, axes, beside, scratch):
+    """Light k as one lobe with ``axes`` (normal, warp, weft) reflects it."""
+    look, lights, place, q = stage.look, stage.lights, sample.place, sample.code
+    (n, warp, weft), v = axes, place.v
+    out, f_out = scratch.work[0], scratch.work[1]
+    middle, e = arriving(lights, k, place.p)
+    disc = disc_of(lights, angle_of(lights, k, place.p), middle)
+    points = len(lights.disc)
+    parts = parts_of(q, 0, points) if disc.angle > 0.0 else 1
+    for part in range(parts):
+        point = point_of(q, part, parts, points)
+        l, share = towards_point(disc, lights.disc[point, 0], lights.disc[point, 1])
+        NoL = above_horizon(dot(n, l), dot(place.n, l), disc.radius)
+        if NoL <= 1e-5:
+            continue
+        if reflector.material.anisotropy == 0.0:
+            h, wide = unit(along(v, 1.0, l)), disc.wider + beside
+            NoH, LoH = min(1.0, dot(n, h)), min(1.0, dot(l, h))
+            brdf_isotropic(look.tables, reflector, wide, NoL, NoH, LoH, f_out)
+        else:
+            x, y = dot(warp, l), dot(weft, l)
+            brdf(look.tables, reflector, disc.wider, x, y, NoL, f_out)
+        for c in range(3):
+            out[c] += f_out[c] * NoL * e[c] * share * scratch.visible[k] / parts
 
 
 @leaf()
@@ -277,21 +153,22 @@ def _blurred(roughness, more):
 
 
 @leaf()
-def _from_around(look, around, place, material, view, beside, n, shares, work):
+def _add_indirect(stage, place, reflector, beside, n, shares, work):
     """Light of the sky and of other faces that goes to the eye, into ``work[0]``.
 
     ``shares``: what base and coat mirror, relative to one lobe at ``n``.
     """
+    material, view, indirect = reflector.material, reflector.sight, stage.indirect
     out, specular, diffuse = work[0], work[1], work[2]
-    coat = shares[1] * albedo_towards(look.tables, material, view, specular, diffuse)
-    base = top = row_of(around.even)
-    if len(around.panorama):
+    coat = shares[1] * albedo_towards(stage.look.tables, material, view, specular, diffuse)
+    base = top = row_of(indirect.even)
+    if len(indirect.panorama):
         mirror = along((-place.v[0], -place.v[1], -place.v[2]), 2.0 * view.NoV, n)
         rough = _blurred(view.table_roughness, beside)
-        base = top = panorama_towards(around.panorama, rough, mirror)
+        base = top = panorama_towards(indirect.panorama, rough, mirror)
         if coat > 0.0:
             rough = _blurred(material.coat_roughness, beside)
-            top = panorama_towards(around.panorama, rough, mirror)
+            top = panorama_towards(indirect.panorama, rough, mirror)
     for c in range(3):
         specular[c] *= shares[0]
         out[c] = diffuse[c] * place.diffuse[c] + (specular[c] + coat) * place.mirrored[c]
@@ -300,26 +177,78 @@ def _from_around(look, around, place, material, view, beside, n, shares, work):
 
 @leaf()
 def _plain(material):
-    """Whether one sample stands for a pixel: there is no detail, or facets show it."""
-    even = material.texture < 0 or faceted(material)
+    """Whether one sample stands for a pixel: there is no detail, or relief samples show it."""
+    even = material.texture < 0 or sampled(material)
     return even and material.maps < 0 and material.perforation_diameter == 0.0
 
 
-@njit(cache=True)
-def shade(mesh, eye, ids, alike, look, lights, around, visibility, factor, side, backdrop, out):
-    """Mean radiance of ``factor`` x ``factor`` samples into each pixel of ``out`` (h, w, 3).
+@leaf()
+def _pixel(stage, raster, x, y, between, scratch):
+    """Radiance that the surface sends through a pixel, into ``scratch.total``.
 
-    ``ids`` (h factor, w factor): face per sample, -1 for none, where ``backdrop`` (3,) is seen;
-    ``visibility`` likewise, (k, ., .), in 1/255; ``side``: facets along each side of a pixel. Where
-    a pixel's 2 x 2 samples are ``alike`` (h, w), only the diagonal is shaded, each for an area
-    twice as large, or one for all where the surface has no relief or facets show it.
+    ``between``: angle between samples. Returns the share of the pixel in which nothing is seen.
+    """
+    mesh, eye, ids, factor, total = stage.mesh, stage.eye, raster.ids, raster.factor, scratch.total
+    total[:], missed = 0.0, 0
+    first, pair, weight = (
+        ids[factor * y, factor * x],
+        raster.coherent[y, x],
+        1.0 / (factor * factor),
+    )
+    one = pair and _plain(stage.look.materials[mesh.panel[first]])
+    if pair:
+        weight = 1.0 if one else 0.5
+        ray = ray_through(eye, 2 * x + 0.5, 2 * y + 0.5)
+        b1, b2, t, plane = meet_plane(mesh, eye, first, ray)
+        hit = Hit(first, b1, b2, t, plane, ray, 2.0 * np.sqrt(weight) * between)
+        place = place_at(mesh, stage.indirect, hit)
+    for q in range(factor * factor):
+        if (pair and q % 3) or (one and q):
+            continue
+        i, j = x * factor + q % factor, y * factor + q // factor
+        f, code = ids[j, i], q
+        if f < 0:
+            missed += 1
+            continue
+        if one:
+            code = WHOLE
+        elif pair:
+            code = FIRST_HALF if q == 0 else SECOND_HALF
+        if not one:
+            ray = ray_through(eye, i, j)
+            b1, b2, t, plane = meet(mesh, eye, f, ray)
+            hit = Hit(f, b1, b2, t, plane, ray, np.sqrt(2.0) * between if pair else between)
+        if not pair:
+            place = place_at(mesh, stage.indirect, hit)
+        for k in range(len(scratch.visible)):
+            scratch.visible[k] = raster.visibility[k, j, i] / 255.0
+        side = raster.side if pair else -(-raster.side // factor)
+        _shade(stage, Sample(hit, place, code, side), scratch)
+        for c in range(3):
+            total[c] += weight * scratch.work[0, c]
+    return missed * weight
+
+
+@njit(cache=True)
+def shade(stage, raster, backdrop, out):
+    """Mean radiance of the samples into each pixel of ``out`` (h, w, 3).
+
+    ``backdrop`` (3,) is seen where no surface is. Of a coherent pixel only the diagonal is shaded,
+    each sample for an area twice as large, or one for all where the surface has no relief or relief
+    samples show it.
     Returns the greatest radiance of the surface, nan where one is not finite.
     """
-    work, total, brightest = np.zeros((3, 3)), np.zeros(3), 0.0
-    visible, facets = np.ones(len(lights.near)), np.empty(ROOM)
-    spread = np.sqrt(dot(row_of(eye.right), row_of(eye.right)))
-    spread /= np.sqrt(dot(row_of(eye.first), row_of(eye.first)))
-    height, width = alike.shape
+    scratch = Scratch(
+        np.zeros(3),
+        np.zeros((3, 3)),
+        np.ones(len(stage.lights.near)),
+        stage.look.materials[:1].copy(),
+        np.empty(1, RELIEF),
+    )
+    eye, brightest = stage.eye, 0.0
+    between = np.sqrt(dot(row_of(eye.right), row_of(eye.right)))
+    between /= np.sqrt(dot(row_of(eye.first), row_of(eye.first)))
+    height, width = raster.coherent.shape
     columns = -(-width // _TILE)
     # By tiles: neighbours lie on the same faces, whose vertices are then still at hand.
     for number in range(columns * -(-height // _TILE) * _TILE * _TILE):
@@ -328,44 +257,11 @@ def shade(mesh, eye, ids, alike, look, lights, around, visibility, factor, side,
         x = tile % columns * _TILE + inside % _TILE
         if y >= height or x >= width:
             continue
-        total[:], missed = 0.0, 0
-        first, pair, weight = ids[factor * y, factor * x], alike[y, x], 1.0 / (factor * factor)
-        one = pair and _plain(look.materials[mesh.panel[first]])
-        if pair:
-            weight = 1.0 if one else 0.5
-            ray = ray_through(eye, 2 * x + 0.5, 2 * y + 0.5)
-            b1, b2, t, plane = meet_plane(mesh, eye, first, ray)
-            hit = (b1, b2, t, plane, ray, 2.0 * np.sqrt(weight) * spread)
-            place = _place(mesh, around, first, hit)
-        for q in range(factor * factor):
-            if (pair and q % 3) or (one and q):
-                continue
-            i, j = x * factor + q % factor, y * factor + q // factor
-            f, point = ids[j, i], q
-            if f < 0:
-                missed += 1
-                continue
-            if one:
-                point = -3
-            elif pair:
-                point = -1 if q == 0 else -2
-            if not one:
-                ray = ray_through(eye, i, j)
-                b1, b2, t, plane = meet(mesh, eye, f, ray)
-                hit = (b1, b2, t, plane, ray, np.sqrt(2.0) * spread if pair else spread)
-            if not pair:
-                place = _place(mesh, around, f, hit)
-            for k in range(len(visible)):
-                visible[k] = visibility[k, j, i] / 255.0
-            few = side if pair else -(-side // factor)
-            sample(
-                mesh, look, eye, lights, around, f, hit, place, point, visible, few, work, facets
-            )
-            for c in range(3):
-                total[c] += weight * work[0, c]
+        missed = _pixel(stage, raster, x, y, between, scratch)
         for c in range(3):
-            # What is not a number is kept: nothing is greater.
-            if total[c] > brightest or total[c] != total[c]:
-                brightest = total[c]
-            out[y, x, c] = total[c] + missed * weight * backdrop[c]
+            value = scratch.total[c]
+            # What is not a number stays: nothing is greater.
+            if value > brightest or value != value:
+                brightest = value
+            out[y, x, c] = value + missed * backdrop[c]
     return brightest

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.brdf import (
     COAT_F0,
-    GGX,
     MIN_ALPHA,
-    F_Schlick,
+    Reflector,
     albedo_towards,
     brdf,
     coat_share,
-    lobe_of,
     view_of,
 )
 from seatlook.pbr.kernels.bvh import new_stack
-from seatlook.pbr.kernels.light import above_horizon, across, angle_of, arriving
+from seatlook.pbr.kernels.light import Lights, above_horizon, across, angle_of, arriving
+from seatlook.pbr.kernels.lobes import GGX, F_Schlick, lobe_of
 from seatlook.pbr.kernels.noise import even
 from seatlook.pbr.kernels.rays import ABOVE, DARK, OPEN, UNSENT, direction, face_met
-from seatlook.pbr.kernels.shade import frame, towards_eye
-from seatlook.pbr.kernels.surface import along, blend, cross, dot, minus, row, row_of, unit
+from seatlook.pbr.kernels.stage import Look, frame, towards_eye
+from seatlook.pbr.kernels.surface import Mesh, along, blend, cross, dot, minus, row, row_of, unit
 from seatlook.pbr.kernels.tables import coupling_at
 
 # Widths (alpha) of the lobes along which rays go, whatever the material: polish and grain.
@@ -93,55 +95,90 @@ def _reflectance(material, n, v, d):
     return value * NoL
 
 
+class Sources(NamedTuple):
+    """What sends light from face to face.
+
+    ``lit`` (k, n): share of each light that reaches a vertex; ``sky`` (n, 3) [cd/m2]: what else
+    does, equal from everywhere.
+    """
+
+    mesh: Mesh
+    look: Look
+    lights: Lights
+    lit: npt.NDArray[np.float64]
+    sky: npt.NDArray[np.float64]
+
+
+class Vertices(NamedTuple):
+    """What some vertices see: their numbers ``which`` (m,), rising, and ``hits`` (m, rays).
+
+    ``hits``: face met by each ray, or one of the codes of ``rays``.
+    """
+
+    which: npt.NDArray[np.int64]
+    hits: npt.NDArray[np.int32]
+
+
+class Reflection(NamedTuple):
+    """How the reflections towards an eye are looked along.
+
+    ``eye`` (3,); ``points`` (n, 3): where light is gathered; 2 ``strata``^2 rays per vertex.
+    """
+
+    eye: npt.NDArray[np.float64]
+    points: npt.NDArray[np.float64]
+    strata: int
+
+
 @njit(cache=True)
-def look_along_lobes(bvh, faces, points, normals, which, eye, strata, hits):
+def look_along_lobes(bvh, faces, reflection, normals, which, hits):
     """What the vertices ``which`` see along 2 strata^2 rays of reflection, into ``hits``.
 
-    ``eye`` (3,); ``faces``: those from that number on count as backs.
+    ``faces``: those from that number on count as backs.
     """
-    stack = new_stack()
+    stack, eye = new_stack(), row_of(reflection.eye)
     for r in range(len(which)):
         i = which[r]
-        p = row(points, i)
-        v = unit(minus(row_of(eye), p))
+        p = row(reflection.points, i)
+        v = unit(minus(eye, p))
         n = towards_eye(row(normals, i), v)
         o = along(p, 10 * ABOVE, n)
         for q in range(hits.shape[1]):
-            d = _lobe(i, q, strata, n, v)
+            d = _lobe(i, q, reflection.strata, n, v)
             hits[r, q] = UNSENT
             if dot(n, d) > 1e-5:
                 hits[r, q] = face_met(bvh, o, d, faces, stack)
 
 
 @leaf()
-def sent(mesh, look, lights, lit, sky, f, d, density, work):
+def _send(sources, f, d, density, work):
     """Luminance that face f, seen from afar, sends against the ray d, into ``work[0]``.
 
-    ``lit`` (k, n): share of each light that reaches a vertex; ``sky`` (n, 3) [cd/m2]: what else
-    does, equal from everywhere. ``density``: rays like this one per solid angle; highlights of a
-    finer detail than they resolve are blurred, or single vertices would glow.
+    ``density``: rays like this one per solid angle; highlights of a finer detail than they resolve
+    are blurred, or single vertices would glow.
     """
-    third = 1.0 / 3.0
+    mesh, look, lights, third = sources.mesh, sources.look, sources.lights, 1.0 / 3.0
     v = (-d[0], -d[1], -d[2])
     n = towards_eye(unit(blend(mesh.normals, mesh.faces, f, third, third)), v)
     p = blend(mesh.vertices, mesh.faces, f, third, third)
     warp, weft = frame(n, row(mesh.warp, mesh.faces[f, 0]))
-    material = look.materials[mesh.panel[f]]
+    panel = mesh.panel[f]
+    material = look.materials[panel]
     colour = row_of(material.albedo)
     view = view_of(
         look.tables, material, material.roughness, colour, dot(warp, v), dot(weft, v), dot(n, v)
     )
     out, f_out, diffuse = work[0], work[1], work[2]
     coat = albedo_towards(look.tables, material, view, f_out, diffuse)
-    around = blend(sky, mesh.faces, f, third, third)
+    sky = blend(sources.sky, mesh.faces, f, third, third)
     for c in range(3):
-        out[c] = (f_out[c] + coat + diffuse[c]) * around[c]
-    mean = coupling_at(look.couplings[mesh.panel[f]], view.table_roughness)
-    fibres = look.fibres[mesh.panel[f]]
+        out[c] = (f_out[c] + coat + diffuse[c]) * sky[c]
+    mean = coupling_at(look.couplings[panel], view.table_roughness)
+    reflector = Reflector(material, look.layers[panel], look.fibres[panel], mean, view)
     for k in range(len(lights.near)):
         seen = 0.0
         for corner in range(3):
-            seen += third * lit[k, mesh.faces[f, corner]]
+            seen += third * sources.lit[k, mesh.faces[f, corner]]
         if seen <= 0.0:
             continue
         l, e = arriving(lights, k, p)
@@ -151,23 +188,24 @@ def sent(mesh, look, lights, lit, sky, f, d, density, work):
             continue
         wider = 0.125 * angle * angle + _BLUR / density
         x, y = dot(warp, l), dot(weft, l)
-        brdf(look.tables, material, fibres, mean, view, wider, x, y, NoL, f_out)
+        brdf(look.tables, reflector, wider, x, y, NoL, f_out)
         for c in range(3):
             out[c] += seen * f_out[c] * NoL * e[c]
 
 
 @njit(cache=True)
-def first_bounce(mesh, look, lights, lit, sky, which, strata, hits, out):
-    """Mean luminance (m, 3) that vertices ``which`` get from the faces they met."""
-    work, rays = np.zeros((3, 3)), strata * strata
-    for r in range(len(which)):
-        n = row(mesh.normals, which[r])
+def first_bounce(sources, vertices, strata, out):
+    """Mean luminance (m, 3) that vertices get from the faces they met."""
+    work, rays, hits = np.zeros((3, 3)), strata * strata, vertices.hits
+    for r in range(len(hits)):
+        i = vertices.which[r]
+        n = row(sources.mesh.normals, i)
         out[r] = 0.0
         for q in range(rays):
             if hits[r, q] >= 0:
-                d = direction(n, which[r], q, strata)
+                d = direction(n, i, q, strata)
                 density = rays * dot(n, d) / np.pi
-                sent(mesh, look, lights, lit, sky, hits[r, q], d, density, work)
+                _send(sources, hits[r, q], d, density, work)
                 for c in range(3):
                     out[r, c] += work[0, c] / rays
 
@@ -182,26 +220,25 @@ def _covered(hits):
 
 
 @njit(cache=True)
-def reflected(mesh, look, lights, lit, sky, points, which, panels, eye, strata, hits, share, out):
+def reflected(sources, vertices, reflection, panels, share, out):
     """What a reflection sees: ``share`` (m,) of it open, and mean luminance (m, 3) of faces met.
 
     ``panels`` (n,): panel of every vertex.
     """
-    work = np.zeros((3, 3))
-    for r in range(len(which)):
+    work, hits, eye = np.zeros((3, 3)), vertices.hits, row_of(reflection.eye)
+    for r in range(len(hits)):
         share[r], out[r] = 1.0, 0.0
         if not _covered(hits[r]):
             continue
-        i = which[r]
-        p = row(points, i)
-        v = unit(minus(row_of(eye), p))
-        n = towards_eye(row(mesh.normals, i), v)
-        material = look.materials[panels[i]]
+        i = vertices.which[r]
+        v = unit(minus(eye, row(reflection.points, i)))
+        n = towards_eye(row(sources.mesh.normals, i), v)
+        material = sources.look.materials[panels[i]]
         total, open_ = 0.0, 0.0
         for q in range(hits.shape[1]):
             if hits[r, q] == UNSENT:
                 continue
-            d = _lobe(i, q, strata, n, v)
+            d = _lobe(i, q, reflection.strata, n, v)
             density = _density(dot(n, v), dot(n, unit(along(v, 1.0, d))))
             weight = _reflectance(material, n, v, d) / density
             total += weight
@@ -209,7 +246,7 @@ def reflected(mesh, look, lights, lit, sky, points, which, panels, eye, strata, 
                 open_ += weight
             elif hits[r, q] >= 0:
                 density *= hits.shape[1]
-                sent(mesh, look, lights, lit, sky, hits[r, q], d, density, work)
+                _send(sources, hits[r, q], d, density, work)
                 for c in range(3):
                     out[r, c] += weight * work[0, c]
         if total > 0.0:

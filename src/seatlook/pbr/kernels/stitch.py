@@ -76,7 +76,7 @@ def away_from_seam(mesh, f):
 
 
 @leaf()
-def relief(thread, distance, arc, width):
+def seam_relief(thread, distance, arc, width):
     """Relief beside a seam for a sample ``width`` [m] wide.
 
     Returns slope away from the seam, slope along it, share of the base colour left, and share of

@@ -187,7 +187,7 @@ def face_numbers(frame, faces, out):
 def lift(mesh, f, b1, b2, p):
     """Point moved onto the surface that the vertex normals imply; Hanika 2021.
 
-    Without it the facets of a rounded surface throw shadows on themselves near the terminator.
+    Without it the faces of a rounded surface throw shadows on themselves near the terminator.
     """
     x, y, z = p
     weights = (1.0 - b1 - b2, b1, b2)

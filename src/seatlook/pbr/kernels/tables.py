@@ -6,15 +6,8 @@ import numpy as np
 from numba import njit
 
 from seatlook.pbr.kernels import leaf
-from seatlook.pbr.kernels.brdf import (
-    D_Charlie,
-    V_Neubelt,
-    V_SmithGGXCorrelated,
-    alphas,
-    layers_at,
-    means_of,
-    rows_of,
-)
+from seatlook.pbr.kernels.brdf import alphas, layers_at, means_of, rows_of
+from seatlook.pbr.kernels.lobes import D_Charlie, V_Neubelt, V_SmithGGXCorrelated
 from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW, lookup, lookup_mean
 
 
@@ -59,7 +52,7 @@ def _ggx_albedo(alpha, mu, n):
 
 @leaf()
 def _sheen_albedo(alpha, mu, n):
-    """Albedo of the nap at one view, on an even grid over sqrt(NoL) and half a turn."""
+    """Albedo of the sheen at one view, on an even grid over sqrt(NoL) and half a turn."""
     side = np.sqrt(max(0.0, 1.0 - mu * mu))
     total = 0.0
     for i in range(n):
@@ -128,8 +121,9 @@ def coupling(tables, materials, out):
 def layers(tables, materials, out):
     """Layers of each material at its own roughness over sqrt(mu), into ``out`` (p, n, 5).
 
-    Columns: what reaches the diffuse base, what gets below coat and nap, the share that the base's
-    lobe reflects more than once, what gets below the coat, and the share lost by the coat's lobe.
+    Columns: what reaches the diffuse base, what gets below coat and sheen, the share that the
+    base's lobe reflects more than once, what gets below the coat, and the share lost by the coat's
+    lobe.
     """
     n = out.shape[1]
     for p in range(len(materials)):
@@ -139,14 +133,14 @@ def layers(tables, materials, out):
         rows = rows_of(tables, materials[p], roughness)
         for j in range(n):
             here = layers_at(tables, materials[p], rows, means, (j / (n - 1)) ** 2)
-            out[p, j, 0], out[p, j, 1] = here.base, here.nap
+            out[p, j, 0], out[p, j, 1] = here.base, here.sheen
             out[p, j, 2] = 1.0 - here.scale - here.bias
             out[p, j, 3], out[p, j, 4] = here.coat, here.coat_lost
 
 
 @leaf()
 def fibres(tables, materials, out):
-    """Distribution of each material's nap over the sine of the half-vector, into ``out`` (p, n)."""
+    """Distribution of each sheen's fibres over the sine of the half-vector, into ``out`` (p, n)."""
     n = out.shape[1]
     for p in range(len(materials)):
         roughness = materials[p].sheen_roughness

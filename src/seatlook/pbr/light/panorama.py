@@ -90,7 +90,7 @@ def _levels(key: tuple[tuple[int, int, int], bytes]) -> FloatArray:
     cosine = np.clip(d @ d.T, -1.0, 1.0)
     levels = [small]
     for roughness in np.linspace(0, 1, LEVELS)[1:]:
-        # Reflected directions of GGX facets seen along their mean: half the angle, with N.L.
+        # Reflected directions of GGX microfacets seen along their mean: half the angle, with N.L.
         half = np.sqrt(0.5 * (1 + cosine))
         alpha2 = max(roughness**2, 0.03) ** 2
         weight = np.maximum(cosine, 0) / (half**2 * (alpha2 - 1) + 1) ** 2 * area

@@ -1,4 +1,4 @@
-"""Quick pictures of a shape: clay under one light, for moving pictures and thumbnails."""
+"""Previews of a shape: quick, under one light, for moving pictures and thumbnails."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from seatlook.pbr.shading.surface import vertex_normals
 _FACTOR = 2  # samples per pixel and axis
 _PAPER = 0.94  # linear
 # Linear; neighbours in the list of panels differ, so that a seam shows where its panels lie flat.
-_CLAY = np.array([[0.52, 0.30, 0.20], [0.62, 0.42, 0.30], [0.42, 0.22, 0.15]])
+_TINTS = np.array([[0.52, 0.30, 0.20], [0.62, 0.42, 0.30], [0.42, 0.22, 0.15]])
 _SKY = 0.25  # share of the light that comes from everywhere
 # The light, seen from the camera: to the right, up, and back along the view.
 _LIGHT = np.array([-0.55, 0.60, 0.58])
 
 
-def sketch(solution: Solution, *, camera: Camera) -> npt.NDArray[np.uint8]:
+def render_preview(solution: Solution, *, camera: Camera) -> npt.NDArray[np.uint8]:
     """Draw a cover on its foam, (h, w, 3) uint8: on the solver's own faces, without shadows.
 
     No light is traced and nothing refined, so that a picture takes a fraction of a second. The
@@ -47,7 +47,7 @@ def sketch(solution: Solution, *, camera: Camera) -> npt.NDArray[np.uint8]:
     value = np.zeros(ids.shape)
     # Every corner of the foam has a vertex of its own, so its light need not be blended.
     kernel.paint(mesh, eye, ids, lit[mesh.faces], len(mesh.faces), value)
-    tint = np.vstack([_CLAY[np.arange(len(cover.panel_names)) % len(_CLAY)], FOAM.albedo])
+    tint = np.vstack([_TINTS[np.arange(len(cover.panel_names)) % len(_TINTS)], FOAM.albedo])
     panel = np.where(ids < m, mesh.panel[ids], len(tint) - 1)
     colour = tint[panel] * (_SKY + (1.0 - _SKY) * value)[..., None]
     colour[ids < 0] = _PAPER

@@ -1,6 +1,6 @@
 """The BRDF on arrays: the reference that the compiled terms and a path tracer must agree with.
 
-A stack, from the top: clear coat, nap (sheen), a GGX base whose colour mixes dielectric and
+A stack, from the top: clear coat, sheen, a GGX base whose colour mixes dielectric and
 metal, and the diffuse light that gets through all of them. Each layer hands on only what it has
 not reflected, in both directions, so the whole is reciprocal and never gives back more than it
 gets. Cosines are ``NoL``, ``NoV``, ``NoH``, ``LoH``; T is the warp and B the weft direction.
@@ -103,14 +103,14 @@ def coat_share(appearance: Appearance) -> float:
 
 
 def passed(appearance: Appearance, mu: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Light left at one direction: (below the coat, below coat and nap, to the diffuse base)."""
+    """Light left at one direction: (below the coat, below coat and sheen, to the diffuse base)."""
     a, one = appearance, np.ones(())
     coat = 1 - coat_share(a) * E_GGX(a.coat_roughness, mu, COAT_F0 * one, one)
     strongest = float(a.sheen.max()) * (1 - a.metalness)
-    nap = coat * (1 - strongest * lookup(load_tables().sheen, a.sheen_roughness, mu))
+    below = coat * (1 - strongest * lookup(load_tables().sheen, a.sheen_roughness, mu))
     f0 = np.asarray(a.f0)
-    base = nap * (1 - E_GGX(np.sqrt(min(alphas(a))), mu, f0, F90(f0)))
-    return coat, nap, base
+    base = below * (1 - E_GGX(np.sqrt(min(alphas(a))), mu, f0, F90(f0)))
+    return coat, below, base
 
 
 def coupling(appearance: Appearance) -> float:
@@ -154,20 +154,20 @@ def evaluate(appearance: Appearance, v: FloatArray, l: FloatArray) -> FloatArray
     True
     """
     a, m = appearance, appearance.metalness
-    coat_v, nap_v, base_v = passed(a, v[..., 2])
-    coat_l, nap_l, base_l = passed(a, l[..., 2])
+    coat_v, below_v, base_v = passed(a, v[..., 2])
+    coat_l, below_l, base_l = passed(a, l[..., 2])
     f0 = (1 - m) * a.f0 + m * a.albedo
     f90 = (1 - m) * F90(np.asarray(a.f0)) + m * F90(a.albedo)
-    base = np.minimum(nap_v, nap_l)[..., None] * specular(alphas(a), v, l, f0, f90)
+    base = np.minimum(below_v, below_l)[..., None] * specular(alphas(a), v, l, f0, f90)
     diffuse = (1 - m) * a.albedo * (base_v * base_l / (np.pi * coupling(a)))[..., None]
-    nap = np.minimum(coat_v, coat_l)[..., None] * (1 - m) * a.sheen * sheen(a, v, l)[..., None]
+    fibres = np.minimum(coat_v, coat_l)[..., None] * (1 - m) * a.sheen * sheen(a, v, l)[..., None]
     alpha = a.coat_roughness**2
     coat = coat_share(a) * specular((alpha, alpha), v, l, np.full(3, COAT_F0), np.ones(3))
-    return np.asarray(base + diffuse + nap + coat)
+    return np.asarray(base + diffuse + fibres + coat)
 
 
 def sheen(appearance: Appearance, v: FloatArray, l: FloatArray) -> FloatArray:
-    """Lobe of a white nap [1/sr], scaled so that its albedo stays below 1."""
+    """Lobe of a white sheen [1/sr], scaled so that its albedo stays below 1."""
     h = v + l
     NoH = np.minimum(1.0, h[..., 2] / np.linalg.norm(h, axis=-1))
     t = load_tables()

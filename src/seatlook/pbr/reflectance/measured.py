@@ -35,7 +35,7 @@ def mean_albedo(maps: TextureMaps) -> FloatArray:
     return np.asarray(np.maximum(count @ linear / count.sum(axis=1), 1e-4))
 
 
-# A gallery draws one material after the other: the last two looks are kept.
+# A gallery draws one material after the other: the last two looks are cached.
 @functools.lru_cache(maxsize=2)
 def load_maps(sets: tuple[TextureMaps, ...]) -> Measured:
     """Pack map sets; that of 2048 x 2048 pixels takes 180 MB."""

@@ -30,7 +30,7 @@ def texture_index(appearance: Appearance) -> int:
 
 
 def load_textures(*which: int) -> Textures:
-    """Relief maps with those filled in that are asked for; each is made once per process."""
+    """Relief maps of which some are filled in; each is made once per process."""
     for one in which:
         _make(one)
     return Textures(_texels(), _START[:-1], SIZE, float(CELLS))

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Hashable
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from seatlook.model import Camera, FloatArray, IntArray, Rig
-from seatlook.pbr.cache import Kept
-from seatlook.pbr.kernels import bvh, light, rays, shade
-from seatlook.pbr.kernels import specular_bounce as gloss
+from seatlook.pbr.cache import Cache
+from seatlook.pbr.kernels import bvh, light, rays, specular_bounce
 from seatlook.pbr.kernels.light import Lights
+from seatlook.pbr.kernels.specular_bounce import Reflection, Sources, Vertices
+from seatlook.pbr.kernels.stage import Look
 from seatlook.pbr.light.rig import pack_lights, sky_colour, sky_levels, sky_unhidden
 from seatlook.pbr.quality import Quality
 from seatlook.pbr.shading.subdivision import boundary_edges
@@ -25,22 +25,15 @@ _HIDDEN_SKY = 0.3
 _CONTRAST = 0.2
 
 
-class Seen(NamedTuple):
-    """What some vertices of the drawn surface see: ``which`` (m,), rising; ``hits`` (m, rays)."""
+class IndirectLight:
+    """Light of the sky and of other faces at every vertex of a drawn surface.
 
-    which: IntArray
-    hits: npt.NDArray[np.int32]
-
-
-class Surroundings:
-    """Light from around at every vertex of a drawn surface.
-
-    What a vertex sees is kept by ``kept(key, make)``: over the half-space once, along
-    reflections per camera. Lights and materials cost only what these faces send.
+    What a vertex sees lies in the ``cache``: over the half-space once, along reflections per
+    camera. Lights and materials cost only what these faces send.
     """
 
-    def __init__(self, surface: Surface, tree: bvh.Bvh, kept: Kept) -> None:
-        self.surface, self.tree, self.kept = surface, tree, kept
+    def __init__(self, surface: Surface, tree: bvh.Bvh, cache: Cache) -> None:
+        self.surface, self.tree, self.cache = surface, tree, cache
         self.few = surface.solved
 
     @functools.cached_property
@@ -56,9 +49,9 @@ class Surroundings:
         return out
 
     def light(
-        self, rig: Rig, look: shade.Look, level: Quality, camera: Camera, ids: np.ndarray
-    ) -> light.Around:
-        """Light from around under a rig; see ``light.Around``."""
+        self, rig: Rig, look: Look, level: Quality, camera: Camera, ids: np.ndarray
+    ) -> light.Indirect:
+        """Indirect light under a rig; see ``light.Indirect``."""
         mesh, k = self.surface.mesh, self.surface.vertices
         n = len(mesh.vertices)
         look = look._replace(materials=from_afar(look))
@@ -68,21 +61,21 @@ class Surroundings:
         sky = (seen.hits == rays.OPEN).mean(axis=1)[:, None] * even
         if len(panorama):
             key = ("sky", panorama.tobytes(), len(seen.which))
-            whole = self.kept(key, lambda: sky_unhidden(rig, mesh.normals[seen.which]))
+            whole = self.cache(key, lambda: sky_unhidden(rig, mesh.normals[seen.which]))
             rays.sky_seen(mesh.normals, seen.which, seen.hits, strata, panorama, whole, sky)
         diffuse[:k] = self._spread(seen.which, sky)
         # Of the sky below a seam, and where the foam is in sight, little is seen.
         diffuse[k:] = _HIDDEN_SKY * diffuse[: self.few].mean(axis=0)
         if level.bounces:
             lights = pack_lights(rig)
-            lit = self._lit(lights)
+            sources = Sources(mesh, look, lights, self._lit(lights), diffuse)
             sent = np.empty((len(seen.which), 3))
-            gloss.first_bounce(mesh, look, lights, lit, diffuse, *seen[:1], strata, seen.hits, sent)
+            specular_bounce.first_bounce(sources, seen, strata, sent)
             diffuse[:k] += self._again(seen, sent, look.materials, level.bounces - 1)
-            self._mirror(camera, ids, level, (look, lights, lit, diffuse), open_, mirrored)
+            self._mirror(camera, ids, level, sources, open_, mirrored)
         if level.strata:
             open_[k:] = _HIDDEN_SKY
-        return light.Around(diffuse, mirrored, open_, even, panorama)
+        return light.Indirect(diffuse, mirrored, open_, even, panorama)
 
     def _lit(self, lights: Lights) -> FloatArray:
         """Share of each light that reaches each vertex, (lights, n)."""
@@ -93,7 +86,9 @@ class Surroundings:
         lit[:, : self.surface.vertices] = self.surface.refined.spread(few.T).T
         return lit
 
-    def _again(self, seen: Seen, sent: FloatArray, materials: np.ndarray, times: int) -> FloatArray:
+    def _again(
+        self, seen: Vertices, sent: FloatArray, materials: np.ndarray, times: int
+    ) -> FloatArray:
         """First bounce and those after it, at all refined vertices."""
         total = every = self._spread(seen.which, sent)
         albedo = np.ascontiguousarray(materials["albedo"])
@@ -110,28 +105,17 @@ class Surroundings:
         camera: Camera,
         ids: np.ndarray,
         level: Quality,
-        sources: tuple[shade.Look, Lights, FloatArray, FloatArray],
+        sources: Sources,
         open_: FloatArray,
         mirrored: FloatArray,
     ) -> None:
         """What reflections towards the camera see, into ``open_`` (n,) and ``mirrored`` (n, 3)."""
         k = self.surface.vertices
         key = ("lobes", camera_key(camera), level.factor, level.strata)
-        eye, strata = np.array(camera.position), 3 * level.strata // 4
-        seen = self.kept(key, lambda: self._lobes(eye, strata, ids))
+        reflection = Reflection(np.array(camera.position), self._points, 3 * level.strata // 4)
+        seen = self.cache(key, lambda: self._lobes(reflection, ids))
         share, sent = np.empty(len(seen.which)), np.empty((len(seen.which), 3))
-        gloss.reflected(
-            self.surface.mesh,
-            *sources,
-            self._points,
-            seen.which,
-            self._panel,
-            eye,
-            strata,
-            seen.hits,
-            share,
-            sent,
-        )
+        specular_bounce.reflected(sources, seen, reflection, self._panel, share, sent)
         both = self._spread(seen.which, np.column_stack([share, sent]))
         open_[:k], mirrored[:k] = both[:, 0], both[:, 1:]
 
@@ -143,9 +127,9 @@ class Surroundings:
         panel[mesh.faces] = mesh.panel[:, None]
         return panel
 
-    def _half_space(self, level: Quality) -> Seen:
+    def _half_space(self, level: Quality) -> Vertices:
         if not level.strata:
-            return Seen(np.arange(self.few), np.full((self.few, 64), rays.OPEN, dtype=np.int32))
+            return Vertices(np.arange(self.few), np.full((self.few, 64), rays.OPEN, dtype=np.int32))
         strata, mesh = level.strata, self.surface.mesh
 
         def look(which: IntArray) -> npt.NDArray[np.int32]:
@@ -156,17 +140,15 @@ class Surroundings:
             return hits
 
         wanted = np.ones(self.surface.vertices, dtype=bool)
-        seen: Seen = self.kept(("hits", strata), lambda: self._where_it_changes(look, wanted))
+        seen: Vertices = self.cache(("hits", strata), lambda: self._where_it_changes(look, wanted))
         return seen
 
-    def _lobes(self, eye: FloatArray, strata: int, ids: np.ndarray) -> Seen:
+    def _lobes(self, reflection: Reflection, ids: np.ndarray) -> Vertices:
         m, mesh = self.surface.faces, self.surface.mesh
 
         def look(which: IntArray) -> npt.NDArray[np.int32]:
-            hits = np.empty((len(which), 2 * strata * strata), dtype=np.int32)
-            gloss.look_along_lobes(
-                self.tree, m, self._points, mesh.normals, which, eye, strata, hits
-            )
+            hits = np.empty((len(which), 2 * reflection.strata**2), dtype=np.int32)
+            specular_bounce.look_along_lobes(self.tree, m, reflection, mesh.normals, which, hits)
             return hits
 
         # All refined vertices of the solver's faces that are in the picture.
@@ -180,7 +162,7 @@ class Surroundings:
 
     def _where_it_changes(
         self, look: Callable[[IntArray], npt.NDArray[np.int32]], wanted: np.ndarray
-    ) -> Seen:
+    ) -> Vertices:
         """Look from the solver's vertices, then from refined ones whose parents differ."""
         which = [np.flatnonzero(wanted[: self.few])]
         hits = [look(which[0])]
@@ -195,7 +177,7 @@ class Surroundings:
             hits.append(look(which[-1]))
             middle[differ] = _open(hits[-1])
             share = np.concatenate([share, middle])
-        return Seen(np.concatenate(which), np.concatenate(hits))
+        return Vertices(np.concatenate(which), np.concatenate(hits))
 
     def _spread(self, which: IntArray, values: FloatArray) -> FloatArray:
         """Values (m, d) of the vertices ``which`` carried to all refined ones."""
@@ -211,12 +193,12 @@ class Surroundings:
 
 
 def camera_key(camera: Camera) -> Hashable:
-    """What tells cameras apart, whatever they are called."""
+    """What makes one camera differ from another, whatever they are called."""
     vectors = np.concatenate([camera.position, camera.target, camera.up]).tobytes()
     return (vectors, camera.vertical_fov_deg, camera.size)
 
 
-def from_afar(look: shade.Look) -> np.ndarray:
+def from_afar(look: Look) -> np.ndarray:
     """Materials (p,) whose relief and maps are one roughness and one metalness."""
     out = look.materials.copy()
     for material in out:

@@ -70,8 +70,8 @@ def sewn_edges(cover: Cover, refined: Refined, uv: FloatArray) -> SewnEdges:
     for ends in refined.parents:
         # The new vertices of a level come in the order of the edges they halve.
         order = np.argsort(ends @ key)
-        found = np.searchsorted((ends @ key)[order], np.sort(edges, axis=1) @ key)
-        middle = first + order[found]
+        index = np.searchsorted((ends @ key)[order], np.sort(edges, axis=1) @ key)
+        middle = first + order[index]
         first += len(ends)
         edges = np.concatenate(
             [np.column_stack([edges[:, 0], middle]), np.column_stack([middle, edges[:, 1]])]
@@ -85,10 +85,10 @@ def close(x: FloatArray, edges: SewnEdges) -> FloatArray:
     """Move sewn vertices half-way to the other panel's edge, so no gap is seen."""
     moved = x.copy()
     for panel in np.unique(edges.panel):
-        mine, other = edges.panel == panel, edges.panel != panel
+        own, other = edges.panel == panel, edges.panel != panel
         if not other.any():
             continue
-        v = np.unique(np.concatenate([edges.start[mine], edges.end[mine]]))
+        v = np.unique(np.concatenate([edges.start[own], edges.end[own]]))
         a, b = x[edges.start[other]], x[edges.end[other]]
         near, t, _ = _nearest(x[v], a, b)
         foot = a[near] + t[:, None] * (b[near] - a[near])
@@ -126,13 +126,13 @@ def coordinates(uv: FloatArray, panel_of: IntArray, edges: SewnEdges) -> FloatAr
     """
     out = np.full((len(uv), 2), np.inf)
     for panel in np.unique(edges.panel):
-        mine = edges.panel == panel
+        own = edges.panel == panel
         v = np.flatnonzero(panel_of == panel)
-        a, b = uv[edges.start[mine]], uv[edges.end[mine]]
+        a, b = uv[edges.start[own]], uv[edges.end[own]]
         near, t, distance = _nearest(uv[v], a, b)
         length = np.linalg.norm(b - a, axis=1)
         reached = distance < _REACH
-        arc = edges.arc[mine][near] + t * length[near]
+        arc = edges.arc[own][near] + t * length[near]
         out[v[reached]] = np.column_stack([distance, arc])[reached]
     return out
 

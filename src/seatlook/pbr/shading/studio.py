@@ -4,49 +4,31 @@ from __future__ import annotations
 
 import functools
 from collections import OrderedDict
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable
 from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.errors import InputError, RenderError, did_you_mean
-from seatlook.model import Appearance, Camera, Light, Rig, Solution, Thread
+from seatlook.errors import InputError, RenderError
+from seatlook.model import Camera, Light, Rig, Solution, Thread
 from seatlook.pbr.backend import offscreen_backend
-from seatlook.pbr.cache import Kept
-from seatlook.pbr.kernels import (
-    bvh,
-    rays,
-    shade,
-    stitch,
-    surface,
-    tables,
-)
-from seatlook.pbr.kernels import (
-    coherent as alike,
-)
-from seatlook.pbr.kernels.brdf import MATERIAL
+from seatlook.pbr.cache import Cache
+from seatlook.pbr.kernels import bvh, coherent, rays, shade, stage, stitch, surface
 from seatlook.pbr.light.exposure import ev100
 from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_of
 from seatlook.pbr.picture import Image
 from seatlook.pbr.quality import Quality, quality_named, quality_within
-from seatlook.pbr.reflectance.measured import load_maps, map_sets, mean_albedo
-from seatlook.pbr.reflectance.relief import load_textures, texture_index
-from seatlook.pbr.reflectance.tables import load_tables
-from seatlook.pbr.shading.foam import FOAM
-from seatlook.pbr.shading.indirect import Surroundings, camera_key
+from seatlook.pbr.shading.indirect import IndirectLight, camera_key
+from seatlook.pbr.shading.look import Looks, look_of
 from seatlook.pbr.shading.seam import pack_thread
 from seatlook.pbr.shading.surface import Surface, drawn_surface
-
-Looks = Appearance | Mapping[str, Appearance] | None
 
 # A grey card of 18 % fills the background.
 _CARD = 0.18
 # Foam in front of the cover by less than this [m] is a coarse foam face that cuts through it.
 _COMPRESSED = 0.02
-# Nodes at which what a material lets through, and its nap, are tabulated.
-NODES, NAP_NODES = 129, 513
 # How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
 _OCCLUDER = 0.04
 
@@ -54,7 +36,7 @@ _OCCLUDER = 0.04
 class Studio:
     """One solved cover ready to be drawn, with everything that pictures share.
 
-    Faces seen are kept per camera, shadows per camera and light, open sky per mesh: another
+    Faces seen are cached per camera, shadows per camera and light, open sky per mesh: another
     material costs only its shading, another light only its shadows. With ``shading`` the normals
     are those of another shape of the same cover; outlines and shadows stay.
     """
@@ -69,7 +51,7 @@ class Studio:
         if shading is not None:
             normals = drawn_surface(shading).mesh.normals
             self.surface = replace(self.surface, mesh=self.surface.mesh._replace(normals=normals))
-        self._kept = Kept()
+        self._cache = Cache()
 
     # Maps need neither: they are made for the first picture.
     @functools.cached_property
@@ -77,8 +59,8 @@ class Studio:
         return bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
 
     @functools.cached_property
-    def _surroundings(self) -> Surroundings:
-        return Surroundings(self.surface, self._bvh, self._kept)
+    def _indirect(self) -> IndirectLight:
+        return IndirectLight(self.surface, self._bvh, self._cache)
 
     def render(
         self,
@@ -93,28 +75,25 @@ class Studio:
         level = quality if isinstance(quality, Quality) else quality_named(quality)
         if target_error is not None:
             level = quality_within(target_error)
-        look = self._look(appearance)
+        look = look_of(self.solution.cover, appearance, self.thread)
         ids = self.faces(camera, level.factor)
-        seen = self._visibility(rig, camera, level, ids)
-        width, height = camera.size
-        ev = ev100(rig)
-        white = white_of(rig)
-        radiance = np.empty((height, width, 3), dtype=np.float32)
+        visibility = self._visibility(rig, camera, level, ids)
+        same = self._coherent(rig, camera, level, ids, visibility)
+        ev, white = ev100(rig), white_of(rig)
+        radiance = np.empty((*camera.size[::-1], 3), dtype=np.float32)
         brightest = shade.shade(
-            self.surface.mesh,
-            eye_of(camera, level.factor),
-            ids,
-            self._alike(rig, camera, level, ids, seen),
-            look,
-            pack_lights(rig, level.factor),
-            self._surroundings.light(rig, look, level, camera, ids),
-            seen,
-            level.factor,
-            level.facets,
+            stage.Stage(
+                self.surface.mesh,
+                eye_of(camera, level.factor),
+                look,
+                pack_lights(rig, level.factor),
+                self._indirect.light(rig, look, level, camera, ids),
+            ),
+            shade.Raster(ids, visibility, same, level.factor, level.relief),
             _CARD * 2.5 * 2.0**ev / np.pi * white,
             radiance,
         )
-        _check(brightest, ids, seen, camera)
+        _check(brightest, ids, visibility, camera)
         return Image(
             radiance=radiance,
             ev100=ev,
@@ -133,7 +112,7 @@ class Studio:
             share.flags.writeable = False
             return share
 
-        return np.asarray(self._kept(("cover", camera_key(camera), factor), make))
+        return np.asarray(self._cache(("cover", camera_key(camera), factor), make))
 
     def faces(self, camera: Camera, factor: int = 1) -> npt.NDArray[np.int32]:
         """Face of the drawn mesh seen by each sample, (h factor, w factor), -1 for none.
@@ -144,12 +123,12 @@ class Studio:
             Nothing is in the picture.
         """
         key = ("faces", camera_key(camera), factor)
-        return np.asarray(self._kept(key, lambda: self._draw(camera, factor)))
+        return np.asarray(self._cache(key, lambda: self._draw(camera, factor)))
 
     def facing(self, camera: Camera, factor: int = 1) -> npt.NDArray[np.float32]:
         """Cosine of the normal to the view at each sample of :meth:`faces`; 1 where is none."""
         key = ("facing", camera_key(camera), factor)
-        return np.asarray(self._kept(key, lambda: self._facing(camera, factor)))
+        return np.asarray(self._cache(key, lambda: self._facing(camera, factor)))
 
     def _facing(self, camera: Camera, factor: int) -> npt.NDArray[np.float32]:
         ids = self.faces(camera, factor)
@@ -184,29 +163,29 @@ class Studio:
         for k, one in enumerate(rig.lights):
             key = ("shadow", camera_key(camera), level.factor, level.rays, _light_key(one))
             make = functools.partial(self._shadow, rig, k, camera, level, ids)
-            stack[k] = self._kept(key, make)
+            stack[k] = self._cache(key, make)
         return stack
 
-    def _alike(
+    def _coherent(
         self,
         rig: Rig,
         camera: Camera,
         level: Quality,
         ids: npt.NDArray[np.int32],
-        seen: npt.NDArray[np.uint8],
+        visibility: npt.NDArray[np.uint8],
     ) -> npt.NDArray[np.bool_]:
-        """Pixels whose 2 x 2 samples are as good as one, (h, w)."""
+        """Pixels whose 2 x 2 samples see the same, (h, w)."""
 
         def make() -> npt.NDArray[np.bool_]:
             same = np.zeros(camera.size[::-1], dtype=np.bool_)
             if level.factor == 2:
                 eye, far = eye_of(camera, 2), stitch.reach(self.thread)
-                alike.alike(self.surface.mesh, eye, ids, seen, far, same)
+                coherent.find_coherent(self.surface.mesh, eye, ids, visibility, far, same)
             return same
 
         lights = tuple(_light_key(one) for one in rig.lights)
-        key = ("alike", camera_key(camera), level.factor, level.rays, lights)
-        return np.asarray(self._kept(key, make))
+        key = ("coherent", camera_key(camera), level.factor, level.rays, lights)
+        return np.asarray(self._cache(key, make))
 
     def _shadow(
         self, rig: Rig, k: int, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
@@ -227,41 +206,6 @@ class Studio:
             share,
         )
         return share
-
-    def _look(self, appearance: Looks) -> shade.Look:
-        cover = self.solution.cover
-        own = {n: m.appearance for n, m in zip(cover.panel_names, cover.materials, strict=True)}
-        if isinstance(appearance, Appearance):
-            own = dict.fromkeys(own, appearance)
-        elif appearance is not None:
-            unknown = sorted(set(appearance) - set(own))
-            if unknown:
-                raise InputError.single(
-                    "appearance",
-                    got=f"panel {unknown[0]!r}",
-                    expected=f"one of {', '.join(own)}",
-                    hint=did_you_mean(unknown[0], own),
-                )
-            own |= appearance
-        looks = [*own.values(), FOAM]
-        materials = pack_materials(looks)
-        couplings = np.empty((len(materials), len(load_tables().scale_mean)))
-        tables.coupling(load_tables(), materials, couplings)
-        layers, fibres = np.empty((len(materials), NODES, 5)), np.empty((len(materials), NAP_NODES))
-        tables.layers(load_tables(), materials, layers)
-        tables.fibres(load_tables(), materials, fibres)
-        used = {int(k) for k in materials["texture"] if k >= 0}
-        return shade.Look(
-            materials,
-            couplings,
-            layers,
-            fibres,
-            load_tables(),
-            load_textures(*used),
-            load_maps(map_sets(looks)),
-            np.zeros(1, dtype=MATERIAL),
-            self.thread,
-        )
 
 
 def render(
@@ -296,7 +240,7 @@ def render(
 
     Notes
     -----
-    A studio is kept for the two solutions drawn last; make your own :class:`Studio` to decide.
+    The studios of the two solutions drawn last are cached; make your own :class:`Studio` to decide.
     """
     return studio(solution).render(
         appearance, rig=rig, camera=camera, quality=quality, target_error=target_error
@@ -315,22 +259,6 @@ def studio(solution: Solution) -> Studio:
             _studios.popitem(last=False)
     _studios.move_to_end(key)
     return _studios[key]
-
-
-def pack_materials(appearances: list[Appearance]) -> np.ndarray:
-    """Records (p,) of the kernels' material type; the albedo is the mean of what is seen."""
-    out = np.zeros(len(appearances), dtype=MATERIAL)
-    sets = map_sets(appearances)
-    for record, a in zip(out, appearances, strict=True):
-        for name in MATERIAL.names or ():
-            if name not in ("texture", "maps"):
-                record[name] = getattr(a, name)
-        record["texture"] = texture_index(a)
-        record["maps"] = -1
-        if a.maps is not None:
-            record["maps"] = sets.index(a.maps)
-            record["albedo"] *= mean_albedo(a.maps)
-    return out
 
 
 def eye_of(camera: Camera, factor: int) -> surface.Eye:
@@ -358,10 +286,10 @@ def eye_of(camera: Camera, factor: int) -> surface.Eye:
     return surface.Eye(np.array(camera.position), first, step * right, step * down)
 
 
-def _check(brightest: float, ids: np.ndarray, seen: np.ndarray, camera: Camera) -> None:
+def _check(brightest: float, ids: np.ndarray, visibility: np.ndarray, camera: Camera) -> None:
     if not np.isfinite(brightest):
         raise RenderError(f"camera {camera.name}: the picture holds values that are not finite")
-    if brightest <= 0 and (seen[:, ids >= 0] > 0).any():
+    if brightest <= 0 and (visibility[:, ids >= 0] > 0).any():
         raise RenderError(f"camera {camera.name}: the picture is black though a light reaches it")
 
 

@@ -67,10 +67,10 @@ def subdivide(points: FloatArray, faces: IntArray, *, levels: int, corners: IntA
         step, faces, ends = _step(faces, operator.shape[0], corners)
         operator = (step @ operator).tocsr()
         parents.append(ends)
-    kept = operator[:n]
+    old = operator[:n]
     control = points.copy()
     for _ in range(_SWEEPS):
-        control += points - kept @ control
+        control += points - old @ control
     refined = np.asarray(operator @ control)
     refined[:n] = points
     return Refined(np.ascontiguousarray(refined), faces, tuple(parents))
