@@ -300,7 +300,7 @@ def test_recipe_wrinkle_index_or_measure(clone):
 
 
 def test_recipe_render_quality(clone):
-    line = '    "T5": Quality(factor=5, rays=4, strata=16, facets=8, bounces=3, error=0.0100),\n'
+    line = '    "T5": Quality(factor=5, rays=4, strata=16, relief=8, bounces=3, error=0.0100),\n'
     clone.insert("pbr/quality.py", "}\nQUALITIES: dict", line)
     found = clone.run(
         "-c",

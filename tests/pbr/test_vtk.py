@@ -22,16 +22,6 @@ def window():
     return face_window()
 
 
-@pytest.fixture
-def spare():
-    """Return another window; left to Python's collector it would go while the first one draws."""
-    from seatlook.pbr._vtk import FaceWindow
-
-    spare = FaceWindow()
-    yield spare
-    spare._window.Finalize()
-
-
 def bumps(x, y):
     return 0.02 * np.sin(40 * x) * np.cos(30 * y)
 
@@ -58,22 +48,28 @@ def test_faces_are_those_a_ray_meets(window, size):
     assert (ids != rays).sum() <= max(1, 0.004 * ids.size)
 
 
-def test_shader_that_does_not_compile_is_raised(spare, capfd):
-    spare._actor.GetShaderProperty().ClearAllFragmentShaderReplacements()
-    spare._actor.GetShaderProperty().AddFragmentShaderReplacement(
+def test_shader_that_does_not_compile_is_raised(capfd):
+    from seatlook.pbr._vtk import FaceWindow
+
+    broken = FaceWindow()
+    broken._actor.GetShaderProperty().ClearAllFragmentShaderReplacements()
+    broken._actor.GetShaderProperty().AddFragmentShaderReplacement(
         "//VTK::Light::Impl", True, "this is no GLSL;", False
     )
     solution = sheet(bumps, steps=2)
     with pytest.raises(RenderError, match="VTK reported: ERROR: In vtkShaderProgram"):
-        spare.faces(solution.positions, solution.cover.faces, above(), (8, 8))
+        broken.faces(solution.positions, solution.cover.faces, above(), (8, 8))
     assert capfd.readouterr().err == ""
 
 
-def test_frame_without_face_numbers_is_raised(spare):
-    spare._actor.GetShaderProperty().ClearAllFragmentShaderReplacements()
+def test_frame_without_face_numbers_is_raised():
+    from seatlook.pbr._vtk import FaceWindow
+
+    stock = FaceWindow()
+    stock._actor.GetShaderProperty().ClearAllFragmentShaderReplacements()
     solution = sheet(bumps, steps=2)
     with pytest.raises(RenderError, match="holds no face numbers"):
-        spare.faces(solution.positions, solution.cover.faces, above(fov=5.0), (8, 8))
+        stock.faces(solution.positions, solution.cover.faces, above(fov=5.0), (8, 8))
 
 
 def test_same_frame_twice_and_after_another(window):
