@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from seatlook import io, pbr
 from seatlook.assembly import assemble
+from seatlook.assembly.contradictions import refuse_contradictions
 from seatlook.chain.assess import Assessment, assess, limited, zones_with_faces
 from seatlook.chain.choose import Look, camera_of, look_of, narrowed, rig_of
 from seatlook.chain.draw import map_ends
@@ -184,6 +185,7 @@ class Case:
         zones = zones_with_faces(cover.zone, cover.zone_names)
         for limit in scene.limits:
             limited(limit, scene, zones)
+        refuse_contradictions(scene, cover)
         return cover
 
     def look(self, texture: Look) -> Appearance | None:

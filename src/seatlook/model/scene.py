@@ -21,6 +21,16 @@ from seatlook.model.thread import Thread
 
 # What [accept] can limit besides the figures of a zone: its worst score over textures and rigs.
 SCORE_MEASURES = ("vwi", "equivalent_height_mm")
+# Contradictions that [check] can let pass.
+ALLOWED = (
+    "twisted seam",
+    "exchanged seams",
+    "ties apart",
+    "scale",
+    "start inside",
+    "curve inside",
+    "hook far",
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,6 +160,7 @@ class Scene:
     placement : panel name -> Pose; a panel without one is laid out over the foam
     design : what the finished shape is compared with, if given
     hem : whether seam allowances are folded inward; if not, seams are free hinges
+    allowed : contradictions out of ``ALLOWED`` that a check lets pass
     element_sizes : panel name -> float [m]     of panels that are meshed finer or coarser
     element_size : float [m]; smallest_notch : float [m], below which reading closed cuts
     c_threshold : float [1/m]
@@ -175,6 +186,7 @@ class Scene:
     limits: tuple[Limit, ...] = ()
     design: Design | None = None
     hem: bool = False
+    allowed: tuple[str, ...] = ()
     thread: Thread = field(default_factory=Thread)
     element_size: float
     element_sizes: MappingProxyType[str, float] = field(

@@ -22,7 +22,7 @@ from seatlook.io.schema import (
     Texts,
 )
 from seatlook.model.cover import RAMPS
-from seatlook.model.scene import SCORE_MEASURES
+from seatlook.model.scene import ALLOWED, SCORE_MEASURES
 from seatlook.wrinkle import INDICES
 
 AS_BUILT = "as built"
@@ -61,6 +61,7 @@ KEYS: dict[str, Kind] = {
             "side": Text(choices=("middle", "visible"), default="middle"),
         }
     ),
+    "check": Table({"allow": Texts(choices=ALLOWED, default=())}),
     "mesh": Table(
         {
             "element_size_mm": Number(low=0.5, high=100, scale=MM, required=True),

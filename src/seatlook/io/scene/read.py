@@ -87,6 +87,7 @@ class _Reader:
             path=document.file,
             digest=self.files.digest(),
             hem=row["hem"],
+            allowed=row["check"]["allow"],
             element_size=row["mesh"]["element_size_mm"],
             element_sizes=MappingProxyType(
                 {n: size for n, p in row["panel"].items() if (size := p["element_size_mm"])}

@@ -1,0 +1,273 @@
+"""Contradictions of a scene that show before it is solved: places that cannot be reached together.
+
+Each has a name, by which ``[check] allow`` of the scene lets it pass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from seatlook.errors import InputError, Problem
+from seatlook.io.toml import Document, Key, read_document, spelled
+from seatlook.mesh import face_areas
+from seatlook.model import Anchor, Cover, FloatArray, Foam, IntArray, Points, Scene, Stitching
+from seatlook.solver.foam.distance import DistanceField, distance_field
+
+FARTHEST_WIRE = 0.100  # m, mean way of a hooked line to its wire; 40 mm on the demo
+NEAR_WIRE = 0.050  # m; from here on a wire at less than half of the way is the one that was meant
+TIES_APART = 0.001  # m: ties of one point are then both off by what the verdict refuses
+DEEPEST_CURVE = 0.010  # m: a cover that is held deeper counts as buried
+DEEPEST_START, INSIDE = 0.020, 0.2  # m; share of a panel that may start deeper
+LARGEST, SMALLEST = 4.0, 0.01  # area of the panels over that of the foam; .55 on the demo
+TWISTED = 0.95  # gap of a seam with one side turned round, over its gap; 1.15 and more on the demo
+EXCHANGED = 0.5  # gap of two seams with exchanged partners, over their gap
+_APART = 0.050  # m, mean gap from which partners can be exchanged
+_ALIKE = 0.1  # difference in length of seams that could be taken for each other
+_SHARES = np.linspace(0.0, 1.0, 11)  # of a seam's length, where gaps are measured
+
+
+def refuse_contradictions(scene: Scene, cover: Cover) -> None:
+    """Refuse what a solve could not mend, all of it at once, with file and line.
+
+    Raises
+    ------
+    InputError
+        Ties that send one point to two places, a hook far from its wire, a curve through the foam,
+        a pattern out of scale, panels that start inside the foam, seams twisted or exchanged.
+    """
+    lines = _Lines(scene)
+    problems = list(_seams(lines, scene, cover))
+    problems += _shared_points(lines, cover)
+    if cover.foam is not None:
+        field = distance_field(cover.foam.vertices, cover.foam.faces)
+        problems += _scale(lines, cover, cover.foam)
+        problems += _starts(lines, cover, field)
+        problems += _curves(lines, scene, cover, field)
+        problems += _hooks(lines, scene, cover)
+    refused = [problem for name, problem in problems if name not in scene.allowed]
+    if refused:
+        raise InputError(refused)
+
+
+class _Lines:
+    """The lines of the scene's files; a scene that was made in memory has none."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = self._seams = None
+        if scene.path is not None and scene.path.exists():
+            self._scene = read_document(scene.path)
+            seams = scene.path.parent / str(self._scene.data["pattern"]["seams"])
+            self._seams = read_document(seams) if seams.exists() else None
+
+    def tie(self, anchor: Anchor) -> Key:
+        """Key of the hook or frame that an anchor comes from."""
+        rows: list[dict[str, Any]] = [] if self._scene is None else self._scene.data[anchor.kind]
+        names = [row.get("name") for row in rows]
+        number: str | int = names.index(anchor.name) if anchor.name in names else anchor.name
+        return (anchor.kind, number)
+
+    def problem(self, name: str, key: Key, got: str, expected: str) -> tuple[str, Problem]:
+        """A contradiction in the scene file, and its name."""
+        return name, _problem(self._scene, name, key, got, expected)
+
+    def seam(self, name: str, number: int, got: str, expected: str) -> tuple[str, Problem]:
+        """A contradiction of a seam in the seams file, and its name."""
+        return name, _problem(self._seams, name, ("seam", number), got, expected)
+
+
+def _problem(document: Document | None, name: str, key: Key, got: str, expected: str) -> Problem:
+    return Problem(
+        key=spelled(key),
+        got=got,
+        expected=expected,
+        file=None if document is None else document.file,
+        line=None if document is None else document.line(key),
+        hint=f'if it is meant: [check] allow = ["{name}"] in the scene',
+    )
+
+
+def _seams(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[tuple[str, Problem]]:
+    """Seams whose ties cross, and pairs that would be shorter with each other's partners."""
+    sides = [(_at_shares(s, s.a, cover), _at_shares(s, s.b, cover)) for s in cover.stitchings]
+    number = {seam.name: k for k, seam in enumerate(scene.pattern.seams)}
+    gaps = [_gap(a, b) for a, b in sides]
+    for seam, (a, b), gap in zip(cover.stitchings, sides, gaps, strict=True):
+        turned = _gap(a, b[::-1])
+        if turned < TWISTED * gap:
+            yield lines.seam(
+                "twisted seam",
+                number[seam.name],
+                f"{seam.name!r}, whose ties cross: {1e3 * gap:.0f} mm from side to side, and "
+                f"{1e3 * turned:.0f} mm with one side turned round ({_place(a[0])} is sewn to "
+                f"{_place(b[0])})",
+                "sides that run the same way: exchange from and to, or reverse",
+            )
+    long = [float(seam.length.sum()) for seam in cover.stitchings]
+    for i, j in combinations(range(len(sides)), 2):
+        if abs(long[i] - long[j]) > _ALIKE * max(long[i], long[j]):
+            continue
+        gap = gaps[i] + gaps[j]
+        other = _nearer(sides[i][0], sides[j][1]) + _nearer(sides[j][0], sides[i][1])
+        if gap > 2 * _APART and other < EXCHANGED * gap:
+            one, two = (cover.stitchings[k].name for k in (i, j))
+            yield lines.seam(
+                "exchanged seams",
+                number[one],
+                f"{one!r} and {two!r}, {1e3 * gaps[i]:.0f} and {1e3 * gaps[j]:.0f} mm from side to "
+                f"side at {_place(sides[i][0][5])} and {_place(sides[j][0][5])}; with each other's "
+                f"partners {1e3 * other / 2:.0f} mm",
+                "each edge sewn to the partner beside it",
+            )
+
+
+def _shared_points(lines: _Lines, cover: Cover) -> Iterator[tuple[str, Problem]]:
+    """Points of the cover, sewn or the same, that two ties send to different places."""
+    point = _joined(cover)
+    ties: dict[int, list[tuple[Anchor, FloatArray]]] = {}
+    for anchor in cover.anchors:
+        rows, vertices = _on_vertices(anchor.points)
+        for row, vertex in zip(rows, vertices, strict=True):
+            ties.setdefault(int(point[vertex]), []).append((anchor, anchor.target[row]))
+    seen = set()
+    for pulled in ties.values():
+        for (one, here), (two, there) in combinations(pulled, 2):
+            apart = float(np.linalg.norm(here - there))
+            if one is two or apart <= TIES_APART or (one.name, two.name) in seen:
+                continue
+            seen.add((one.name, two.name))
+            yield lines.problem(
+                "ties apart",
+                lines.tie(two),
+                f"{two.name!r}, which pulls a point to {_place(there)} that {one.kind} "
+                f"{one.name!r} pulls to {_place(here)}, {1e3 * apart:.1f} mm away",
+                f"one place for a shared point, to {1e3 * TIES_APART:g} mm",
+            )
+
+
+def _scale(lines: _Lines, cover: Cover, foam: Foam) -> Iterator[tuple[str, Problem]]:
+    """A pattern that is far too large or small for the foam."""
+    ratio = float(cover.rest_area.sum() / face_areas(foam.vertices, foam.faces).sum())
+    if not SMALLEST <= ratio <= LARGEST:
+        yield lines.problem(
+            "scale",
+            ("pattern", "file"),
+            f"panels of {1e4 * cover.rest_area.sum():.4g} cm2, {ratio:.3g} times the foam's area",
+            f"{SMALLEST:g} to {LARGEST:g} times: is one of them in another unit?",
+        )
+
+
+def _starts(lines: _Lines, cover: Cover, field: DistanceField) -> Iterator[tuple[str, Problem]]:
+    """Panels that start inside the foam."""
+    depth = -field.at(cover.positions)[0][cover.faces].mean(axis=1)
+    for number, name in enumerate(cover.panel_names):
+        own = cover.panel == number
+        area = cover.rest_area[own]
+        share = float(area[depth[own] > DEEPEST_START].sum() / area.sum())
+        if share > INSIDE:
+            place = cover.positions[cover.faces[own][np.argmax(depth[own])]].mean(axis=0)
+            yield lines.problem(
+                "start inside",
+                ("placement", name),
+                f"{100 * share:.0f} % of the panel more than {1e3 * DEEPEST_START:g} mm inside the "
+                f"foam, {1e3 * depth[own].max():.0f} mm at {_place(place)}",
+                f"at most {100 * INSIDE:g} %",
+            )
+
+
+def _curves(
+    lines: _Lines, scene: Scene, cover: Cover, field: DistanceField
+) -> Iterator[tuple[str, Problem]]:
+    """Frame curves that run through the foam; wires are looked at when the scene is read."""
+    curve = {frame.name: frame.curve for frame in scene.frames}
+    for anchor in cover.anchors:
+        depth = -field.at(anchor.target)[0]
+        if anchor.kind == "frame" and depth.max() > DEEPEST_CURVE:
+            yield lines.problem(
+                "curve inside",
+                (*lines.tie(anchor), "curve"),
+                f"{curve[anchor.name]!r}, {1e3 * depth.max():.0f} mm inside the foam at "
+                f"{_place(anchor.target[np.argmax(depth)])}",
+                f"a curve outside, or at most {1e3 * DEEPEST_CURVE:g} mm inside",
+            )
+
+
+def _hooks(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[tuple[str, Problem]]:
+    """Hooked lines that start far from their wire, or nearer to another one."""
+    wires = {hook.name: hook.wire for hook in scene.hooks}
+    targets = {a.name: a.target for a in cover.anchors if a.kind == "hook"}
+    for anchor in cover.anchors:
+        if anchor.kind != "hook":
+            continue
+        start = anchor.points.at(cover.positions)
+        way = _gap(start, anchor.target)
+        ways = {
+            wires[name]: _way(start, target)
+            for name, target in targets.items()
+            if wires[name] != wires[anchor.name]
+        }
+        nearest = min(ways, key=lambda name: ways[name], default="")
+        nearer = way > NEAR_WIRE and bool(ways) and ways[nearest] < 0.5 * way
+        if way > FARTHEST_WIRE or nearer:
+            hint = f"; {nearest!r} is {1e3 * ways[nearest]:.0f} mm away" if nearer else ""
+            middle = len(start) // 2
+            yield lines.problem(
+                "hook far",
+                (*lines.tie(anchor), "wire"),
+                f"{wires[anchor.name]!r}, {1e3 * way:.0f} mm from the line: "
+                f"{_place(start[middle])} goes to {_place(anchor.target[middle])}{hint}",
+                f"a wire at most {1e3 * FARTHEST_WIRE:g} mm away, and none much nearer",
+            )
+
+
+def _joined(cover: Cover) -> IntArray:
+    """Number of the point (n,) that each vertex is one with, by seams that tie vertex to vertex."""
+    pairs = [np.zeros((0, 2), dtype=np.int64)]
+    for seam in cover.stitchings:
+        rows_a, a = _on_vertices(seam.a)
+        rows_b, b = _on_vertices(seam.b)
+        _, i, j = np.intersect1d(rows_a, rows_b, return_indices=True)
+        pairs.append(np.column_stack([a[i], b[j]]))
+    first, second = np.concatenate(pairs).T
+    n = len(cover.rest)
+    graph = coo_array((np.ones(len(first)), (first, second)), shape=(n, n))
+    return np.asarray(connected_components(graph, directed=False)[1])
+
+
+def _on_vertices(points: Points) -> tuple[IntArray, IntArray]:
+    """Rows of the points that are vertices, and these vertices."""
+    corner = points.weights.argmax(axis=1)
+    rows = np.flatnonzero(points.weights.max(axis=1) > 1.0 - 1e-9)
+    return rows, points.vertices[rows, corner[rows]]
+
+
+def _at_shares(seam: Stitching, side: Points, cover: Cover) -> FloatArray:
+    """Places (11, 3) at equal shares of a seam's side, as it starts."""
+    places = side.at(cover.positions)
+    share = np.cumsum(seam.length) - 0.5 * seam.length
+    share = (share - share[0]) / (share[-1] - share[0])
+    return np.column_stack([np.interp(_SHARES, share, column) for column in places.T])
+
+
+def _gap(a: FloatArray, b: FloatArray) -> float:
+    return float(np.linalg.norm(a - b, axis=1).mean())
+
+
+def _nearer(a: FloatArray, b: FloatArray) -> float:
+    """Gap of two lines, run through the better way round."""
+    return min(_gap(a, b), _gap(a, b[::-1]))
+
+
+def _way(start: FloatArray, target: FloatArray) -> float:
+    """Mean way of points to the nearest of the targets."""
+    return float(np.linalg.norm(start[:, None] - target, axis=2).min(axis=1).mean())
+
+
+def _place(point: FloatArray) -> str:
+    """A place in the units of the scene file."""
+    return f"({', '.join(f'{1e3 * value:.0f}' for value in point)}) mm"

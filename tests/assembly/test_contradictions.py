@@ -1,0 +1,198 @@
+"""Set-ups that no solve can mend are refused by check, with file, line and both places."""
+
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+
+from seatlook import io
+from seatlook.assembly import assemble
+from seatlook.assembly.contradictions import refuse_contradictions
+from seatlook.chain.case import Case
+from seatlook.errors import InputError
+from seatlook.seats import write_demo
+from support.scenes import two_panels
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("demo")
+    write_demo(folder, element_size_mm=20.0)
+    return folder
+
+
+@pytest.fixture
+def edited(demo, tmp_path):
+    """Copy the demo's files, one of them changed; return the path of the scene."""
+
+    def edit(name, change):
+        for file in demo.iterdir():
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+        text = (tmp_path / name).read_text()
+        new = change(text)
+        assert new != text
+        (tmp_path / name).write_text(new)
+        return tmp_path / "scene.toml"
+
+    return edit
+
+
+def exchange(one, two):
+    return lambda text: text.replace(one, "?").replace(two, one).replace("?", two)
+
+
+def problems(scene):
+    """What a check refuses."""
+    with pytest.raises(InputError) as caught:
+        Case(scene).check()
+    return caught.value.problems
+
+
+def named(scene, name):
+    """Problems of one kind, by the name under which they can be allowed."""
+    return [p for p in problems(scene) if f'allow = ["{name}"]' in p.hint]
+
+
+def line_of(path, text, *, after=0):
+    lines = path.read_text().splitlines()
+    return next(k for k, line in enumerate(lines, 1) if k > after and line.startswith(text))
+
+
+def moved(curve, change):
+    """Change of the curves file that moves the points of one curve."""
+
+    def apply(text):
+        head, rest = text.split(f'[curve."{curve}"]', 1)
+        part, *others = re.split(r"(?=\n\[curve)", rest, maxsplit=1)
+        numbers = re.findall(r"\[(-?[\d.e-]+), (-?[\d.e-]+), (-?[\d.e-]+)\]", part)
+        points = change(np.array(numbers, dtype=float)).tolist()
+        return f'{head}[curve."{curve}"]\npoints_mm = {points}\n' + "".join(others)
+
+    return apply
+
+
+def test_the_demo_and_two_panels_contradict_nothing(demo):
+    Case(io.load_scene(demo / "scene.toml")).check()
+    refuse_contradictions(two_panels(), assemble(two_panels()))
+
+
+def test_hooks_to_the_wire_of_the_other_side(edited):
+    path = edited("scene.toml", exchange('wire = "trench_left"', 'wire = "trench_right"'))
+    left, right = named(io.load_scene(path), "hook far")
+    assert left.file == path
+    assert left.line == line_of(path, "wire = ")
+    assert right.line == line_of(path, "wire = ", after=left.line)
+    assert re.match(
+        r"'trench_right', 2\d\d mm from the line: \(.*\) mm goes to \(.*\) mm; 'trench_left' is "
+        r"\d\d mm away",
+        left.got,
+    )
+
+
+def test_a_twisted_seam(edited):
+    path = edited("seams.toml", lambda text: text.replace("reverse = true", "reverse = false", 1))
+    (problem,) = named(io.load_scene(path), "twisted seam")
+    assert problem.file == path.with_name("seams.toml")
+    assert problem.line == line_of(problem.file, "[[seam]]")
+    assert problem.got.startswith("'INSERT-REAR', whose ties cross: ")
+
+
+@pytest.mark.parametrize("seam", range(13))
+def test_every_seam_of_the_demo_can_be_found_twisted(demo, seam):
+    scene = io.load_scene(demo / "scene.toml")
+    seams = list(scene.pattern.seams)
+    seams[seam] = dataclasses.replace(seams[seam], reverse=False)
+    pattern = dataclasses.replace(scene.pattern, seams=tuple(seams))
+    (problem,) = named(dataclasses.replace(scene, pattern=pattern), "twisted seam")
+    assert repr(seams[seam].name) in problem.got
+
+
+def test_exchanged_partners(edited):
+    one, two = "BOLSTER_L.INSERT", "BOLSTER_R.INSERT"
+    path = edited("seams.toml", exchange(f'b = ["{one}"]', f'b = ["{two}"]'))
+    (problem,) = named(io.load_scene(path), "exchanged seams")
+    assert problem.file == path.with_name("seams.toml")
+    assert re.match(
+        r"'INSERT-BOLSTER_R' and 'INSERT-BOLSTER_L', \d+ and \d+ mm from side to side at \(.*\) mm "
+        r"and \(.*\) mm; with each other's partners \d+ mm",
+        problem.got,
+    )
+
+
+@pytest.mark.parametrize("apart", [32.0, 40.0])
+def test_frame_curves_that_part_where_panels_are_sewn(edited, apart):
+    path = edited("wires.toml", moved("frame_front", lambda points: points - [0, apart, 0]))
+    ties = named(io.load_scene(path), "ties apart")
+    assert len(ties) == 2
+    for problem in ties:
+        assert f", {apart:.1f} mm away" in problem.got
+        assert "'frame front'" in problem.got
+        assert problem.got.count(" mm") == 3
+        assert problem.line in {
+            k for k, line in enumerate(path.read_text().splitlines(), 1) if line == "[[frame]]"
+        }
+
+
+def test_hooks_that_contradict_by_two_millimetres():
+    scene = two_panels()
+    (hook,) = scene.hooks
+    wire = scene.foam.curves[hook.wire] + [0.0, 0.0, 0.002]
+    curves = {**scene.foam.curves, "second": wire}
+    scene = dataclasses.replace(
+        scene,
+        foam=dataclasses.replace(scene.foam, curves=curves),
+        hooks=(hook, dataclasses.replace(hook, name="again", wire="second")),
+    )
+    (problem,) = named(scene, "ties apart")
+    assert ", 2.0 mm away" in problem.got
+    assert problem.line is None
+
+
+def test_a_frame_curve_through_the_foam(edited):
+    def inward(points):
+        middle = np.sin(np.pi * np.linspace(0.0, 1.0, len(points)))
+        return points + 60.0 * middle[:, None] * [0, 1, 0]
+
+    path = edited("wires.toml", moved("frame_front", inward))
+    (problem,) = problems(io.load_scene(path))
+    assert re.match(r"'frame_front', \d\d mm inside the foam at \(", problem.got)
+    assert problem.line == line_of(path, "curve = ")
+
+
+@pytest.mark.parametrize(("factor", "ratio"), [(0.1, r"0\.005\d*"), (10.0, r"5\d\.\d")])
+def test_a_pattern_out_of_scale(demo, factor, ratio):
+    scene = io.load_scene(demo / "scene.toml")
+    cover = assemble(scene)
+    cover = dataclasses.replace(cover, rest=factor * cover.rest)
+    with pytest.raises(InputError) as caught:
+        refuse_contradictions(scene, cover)
+    (problem,) = caught.value.problems
+    assert problem.key == "pattern.file"
+    assert problem.line == line_of(demo / "scene.toml", "file = ")
+    assert re.match(rf"panels of \d+.* cm2, {ratio} times the foam's area", problem.got)
+
+
+def test_a_panel_that_starts_inside(edited):
+    def lower(text):
+        head, rest = text.split("[placement.INSERT]", 1)
+        return f"{head}[placement.INSERT]" + rest.replace("142.09", "40.09", 1)
+
+    path = edited("scene.toml", lower)
+    (problem,) = named(io.load_scene(path), "start inside")
+    assert problem.key == "placement.INSERT"
+    assert problem.line == line_of(path, "[placement.INSERT]")
+    assert re.match(r"\d+ % of the panel more than 20 mm inside the foam, \d+ mm at", problem.got)
+
+
+def test_a_contradiction_can_be_allowed_by_name(edited):
+    allow = '[check]\nallow = ["hook far"]\n\n[pattern]'
+    swap = exchange('wire = "trench_left"', 'wire = "trench_right"')
+    path = edited("scene.toml", lambda text: swap(text).replace("[pattern]", allow))
+    scene = io.load_scene(path)
+    assert scene.allowed == ("hook far",)
+    Case(scene).check()
+    unknown = path.read_text().replace('"hook far"', '"hooks far"')
+    path.write_text(unknown)
+    with pytest.raises(InputError, match=r"check.allow: got .*hooks far"):
+        io.load_scene(path)
