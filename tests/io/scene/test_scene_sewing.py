@@ -1,11 +1,13 @@
 """What a scene says of hem, hog rings and element sizes, and what is refused, with its line."""
 
+import contextlib
 import re
 from dataclasses import replace
 
 import pytest
 
 import seatlook.io.scene.read as module
+from seatlook.errors import InputError, InputWarning
 from seatlook.flattening.pattern import cut_outline
 from seatlook.io.scene.read import load_scene
 from support.example_scene import EXAMPLE, write_example_files
@@ -111,3 +113,23 @@ def test_allowance_wider_than_its_panel(load, problems, monkeypatch):
             r"[\d.]+ mm wide, expected an allowance narrower than its panel",
             message,
         ), message
+
+
+@pytest.mark.parametrize("scale", [0.1, 10.0])
+def test_pattern_out_of_scale_with_its_foam_is_named(load, monkeypatch, scale):
+    whole = module.read_pattern
+
+    def scaled(*args, **options):
+        pattern = whole(*args, **options)
+        panels = tuple(
+            replace(p, outline=scale * p.outline, cut_outline=scale * p.cut_outline)
+            for p in pattern.panels
+        )
+        return replace(pattern, panels=panels)
+
+    monkeypatch.setattr(module, "read_pattern", scaled)
+    with (
+        pytest.warns(InputWarning, match="is the unit of one of them wrong"),
+        contextlib.suppress(InputError),
+    ):
+        load()

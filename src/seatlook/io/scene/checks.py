@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from itertools import combinations
 from typing import Any
@@ -12,6 +13,7 @@ import trimesh.triangles
 from scipy.spatial import cKDTree
 
 from seatlook import mesh
+from seatlook.errors import InputWarning
 from seatlook.io.toml import Document
 from seatlook.model import FloatArray, Foam, Pattern, Pose
 
@@ -24,6 +26,7 @@ _SPACING = 0.005  # of the points at which a wire is looked at [m]
 _ONE_PLANE = 0.001  # distance of panels that lie on each other [m]
 _OVERLAP = 0.01  # share of the smaller panel
 _FARTHEST = 10.0  # times the diagonal of the foam, from its middle to where a panel starts
+_IN_SCALE = (0.13, 3.5)  # largest panel over the diagonal of the foam; wrong by ten is outside
 _nearest: Any = trimesh.triangles.closest_point  # one point for each of (m, 3, 3) triangles
 
 
@@ -91,6 +94,22 @@ def check_distance(document: Document, placement: Mapping[str, Pose], foam: Foam
                 f"a place {away:.3g} m from the middle of the foam",
                 f"at most {_FARTHEST * size:.3g} m, {_FARTHEST:g} times the foam's size",
             )
+
+
+def check_scale(document: Document, pattern: Pattern | None, foam: Foam | None) -> None:
+    """Warn of a pattern that is far too small or too large for its foam."""
+    if pattern is None or foam is None:
+        return
+    size = float(np.linalg.norm(np.ptp(foam.vertices, axis=0)))
+    largest = max(float(np.ptp(panel.outline, axis=0).max()) for panel in pattern.panels)
+    low, high = _IN_SCALE
+    if not low * size <= largest <= high * size:
+        warnings.warn(
+            f"{document.file}: the largest panel is {largest:.3g} m and the foam {size:.3g} m: "
+            "is the unit of one of them wrong?",
+            InputWarning,
+            4,
+        )
 
 
 def check_hem(document: Document, pattern: Pattern | None, hem: bool | None) -> None:

@@ -19,7 +19,13 @@ from seatlook.io.mesh import read_foam
 from seatlook.io.pattern.dxf import SMALLEST_NOTCH
 from seatlook.io.pattern.seams import read_pattern
 from seatlook.io.scene.changes import change
-from seatlook.io.scene.checks import check_distance, check_hem, check_overlap, check_wires
+from seatlook.io.scene.checks import (
+    check_distance,
+    check_hem,
+    check_overlap,
+    check_scale,
+    check_wires,
+)
 from seatlook.io.scene.files import SceneFiles
 from seatlook.io.scene.keys import AS_BUILT, scene_keys
 from seatlook.io.scene.ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
@@ -122,6 +128,7 @@ class _Reader:
         check_wires(document, row, pattern, foam)
         check_overlap(document, pattern, parts["placement"])
         check_distance(document, parts["placement"], foam)
+        check_scale(document, pattern, foam)
         check_hem(document, pattern, row["hem"])
         with document.blame(("thread",)):
             parts["thread"] = _thread(row["thread"])
