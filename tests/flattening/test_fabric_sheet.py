@@ -9,8 +9,9 @@ from PIL import Image
 from seatlook.errors import InputError
 from seatlook.flattening import flatten
 from seatlook.flattening.fabric_sheet import fabric_energy, fabric_rows, grain_strain
+from seatlook.flattening.face_map import gradient_of, strains_by_grain
 from seatlook.flattening.flatten import SEAM_TOLERANCE
-from seatlook.flattening.relax import _gradient, flatten_patch, strains_by_grain
+from seatlook.flattening.relax import flatten_patch
 from seatlook.flattening.strain_map import write_strain_maps
 from seatlook.mesh import face_areas
 from seatlook.model import Curve, Fabric
@@ -28,7 +29,7 @@ def test_fabric_derivatives():
     """Taylor: residuals of a stretched, sheared patch fall with the square of the step."""
     flat, faces = sheet(h=0.03)
     space = rolled(flat, 0.12)
-    gradient = _gradient(space, faces)
+    gradient = gradient_of(space, faces)
     rng = np.random.default_rng(0)
     x = flat @ np.array([[1.03, 0.02], [-0.01, 0.96]]) + 1e-4 * rng.normal(size=flat.shape)
     way = 1e-3 * rng.normal(size=flat.shape)
@@ -50,7 +51,7 @@ def test_fabric_derivatives():
 def test_fabric_rows_add_up_to_its_energy():
     flat, faces = sheet(h=0.03)
     space = rolled(flat, 0.12)
-    gradient, area = _gradient(space, faces), face_areas(space, faces)
+    gradient, area = gradient_of(space, faces), face_areas(space, faces)
     x = flat @ np.array([[1.03, 0.02], [-0.01, 0.96]])
     values, _ = fabric_rows(x, gradient, np.sqrt(area), CLOTH)
     mean = np.sqrt(CLOTH.warp.stiffness[0] * CLOTH.weft.stiffness[0])

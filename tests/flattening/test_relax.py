@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 from seatlook import mesh
-from seatlook.errors import SeatlookError
-from seatlook.flattening.relax import HeldEdges, conformal_map, flatten_patch, stretches
+from seatlook.flattening.face_map import stretches
+from seatlook.flattening.relax import HeldEdges, flatten_patch
+from seatlook.flattening.start import conformal_map
 from support.rolls import rolled, sheet
 
 
@@ -83,12 +84,14 @@ def test_start_does_not_change_the_result():
     assert np.allclose(lengths(a, pairs), lengths(b, pairs), rtol=1e-7)
 
 
-def test_a_closed_dome_is_refused():
-    """Most of a sphere cannot be flattened: it folds or does not converge, and says so."""
+def test_a_closed_dome_is_flattened_with_great_strain():
+    """Most of a sphere: no face is turned over, and none is crushed to nothing."""
     angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     points, faces = mesh.triangulate(np.column_stack([np.cos(angle), np.sin(angle)]), 0.15)
     r = np.linalg.norm(points, axis=1) * 0.97 * np.pi
     direction = points / np.maximum(np.linalg.norm(points, axis=1), 1e-12)[:, None]
     ball = 0.1 * np.column_stack([np.sin(r)[:, None] * direction, np.cos(r)])
-    with pytest.raises(SeatlookError, match=r"flattening (folds \d+ faces|does not converge)"):
-        flatten_patch(ball, faces)
+    flat = flatten_patch(ball, faces)
+    assert (mesh.face_vectors(flat, faces)[:, 2] > 0).all()
+    strain = stretches(ball, faces, flat) - 1
+    assert 0.5 < strain.max() < 8

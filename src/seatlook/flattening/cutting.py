@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from seatlook import mesh
 from seatlook.errors import InputError, Problem
-from seatlook.flattening.surface import DesignSurface, sides
+from seatlook.flattening.surface import DesignSurface
 from seatlook.mesh.imprint import Imprinted, imprint
 from seatlook.mesh.line_ends import lay_on
 from seatlook.model import FloatArray, IntArray
@@ -41,7 +41,7 @@ def cut_along(surface: DesignSurface, lines: Mapping[str, FloatArray]) -> Design
     ------
     InputError
         A line lies off the surface, ends on it without parting it, or leaves it; a panel has
-        a hole, one neighbour all round, or less than 1 cm2.
+        a hole or less than 1 cm2.
     """
     laid = lay_on(surface.vertices, surface.faces, lines, tolerance=LINE_TOLERANCE)
     drawing = imprint(surface.vertices, surface.faces, laid)
@@ -54,7 +54,7 @@ def cut_along(surface: DesignSurface, lines: Mapping[str, FloatArray]) -> Design
         panel_names=names,
         seam_lines=MappingProxyType(drawing.edges),
     )
-    sides(cut.patches())  # refuses panels with holes and islands
+    cut.patches()  # refuses panels with holes
     return cut
 
 

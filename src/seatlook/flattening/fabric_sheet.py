@@ -58,11 +58,11 @@ def fabric_rows(x: FloatArray, gradient: Gradient, root: FloatArray, fabric: Fab
     """
     inverse = _inverse(x, gradient)
     squared = _squared(inverse)
-    along = [_combined(gradient, inverse[:, 0, b], inverse[:, 1, b]) for b in (0, 1)]
+    along = [combined(gradient, inverse[:, 0, b], inverse[:, 1, b]) for b in (0, 1)]
     changes = [
         [-_scaled(along[1], squared[:, 1, a]) for a in (0, 1)],
         [-_scaled(along[0], squared[:, 0, a]) for a in (0, 1)],
-        [-_combined((along[1], along[0]), squared[:, 0, a], squared[:, 1, a]) for a in (0, 1)],
+        [-combined((along[1], along[0]), squared[:, 0, a], squared[:, 1, a]) for a in (0, 1)],
     ]
     mean = np.sqrt(np.sqrt(fabric.warp.stiffness[0] * fabric.weft.stiffness[0]))
     parts = _roots(grain_strain(x, gradient), fabric)
@@ -76,6 +76,11 @@ def fabric_rows(x: FloatArray, gradient: Gradient, root: FloatArray, fabric: Fab
     rest = np.sqrt(1.0 - share**2)
     first = [sp.csr_array(p + share * q) for p, q in zip(of_a, of_b, strict=True)]
     return [a + share * b, rest * b, c], [first, [rest * q for q in of_b], of_c]
+
+
+def combined(pair: Gradient, a: FloatArray, b: FloatArray) -> sp.csr_array:
+    """Return the derivatives along two axes, weighted by (m,) each and added."""
+    return sp.csr_array(_scaled(pair[0], a) + _scaled(pair[1], b))
 
 
 def _roots(strain: FloatArray, fabric: Fabric) -> list[tuple[FloatArray, FloatArray]]:
@@ -112,10 +117,6 @@ def _inverse(x: FloatArray, gradient: Gradient) -> FloatArray:
 
 def _squared(inverse: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("mka,mkb->mab", inverse, inverse))
-
-
-def _combined(pair: Gradient, a: FloatArray, b: FloatArray) -> sp.csr_array:
-    return sp.csr_array(_scaled(pair[0], a) + _scaled(pair[1], b))
 
 
 def _scaled(operator: sp.csr_array, rows: FloatArray) -> sp.csr_array:

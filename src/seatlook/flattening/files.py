@@ -83,8 +83,7 @@ def read_design(
     path: Path, *, unit: Literal["mm", "m"] = "mm", seam_lines: Path | None = None
 ) -> DesignSurface:
     """Read a design surface, and cut it along the lines of a file, if there is one."""
-    ungrouped = None if seam_lines is None else "PANEL"
-    form = DesignSurface(**io.read_surface(path, unit=unit, ungrouped=ungrouped)._asdict())
+    form = DesignSurface(**io.read_surface(path, unit=unit, ungrouped="PANEL")._asdict())
     if seam_lines is None:
         return form
     lines = io.read_curves(seam_lines)

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
 from seatlook import mesh
-from seatlook.errors import InputError, Problem, SeatlookError, did_you_mean
+from seatlook.errors import InputError, InputWarning, Problem, SeatlookError, did_you_mean
+from seatlook.flattening.excess import Excess, excess_of
 from seatlook.flattening.fabric_sheet import fabric_energy
+from seatlook.flattening.face_map import strains_by_grain, stretches
 from seatlook.flattening.lengths import agreed_ratios, relax_panel
 from seatlook.flattening.pattern import pair, sewing_pattern
 from seatlook.flattening.placement import place
-from seatlook.flattening.relax import flatten_patch, strains_by_grain, stretches
+from seatlook.flattening.relax import flatten_patch
 from seatlook.flattening.surface import FREE, DesignSurface, Patch, Side, sides
 from seatlook.model import Fabric, FloatArray, Pattern, Pose
 
@@ -68,6 +72,7 @@ class Flattened:
     grain_strain : (m, 3) float64 [1]       Green strain along warp, weft, and the angle between
     panels : tuple of PanelStrain
     seams : tuple of SeamLengths
+    excess : tuple of Excess                panels strained more than their fabric takes
     """
 
     pattern: Pattern
@@ -77,6 +82,7 @@ class Flattened:
     grain_strain: FloatArray
     panels: tuple[PanelStrain, ...]
     seams: tuple[SeamLengths, ...]
+    excess: tuple[Excess, ...]
 
 
 def flatten(
@@ -121,8 +127,15 @@ def flatten(
     InputError
         A panel is not a disk; ``ease`` or ``short`` name nothing or ask too much.
     SeatlookError
-        A panel cannot be flattened without folding, or the lines of a seam differ by more than
-        ``SEAM_TOLERANCE`` though none of them is eased.
+        A panel has faces without area, or does not come to rest; its outline crosses itself in
+        the plane; the lines of a seam differ by more than ``SEAM_TOLERANCE`` though none of them
+        is eased.
+
+    Warns
+    -----
+    InputWarning
+        A panel is strained more than its fabric takes, before tension and short: where, how much
+        and where a dart would go.
     """
     patches = surface.patches()
     borders = sides(patches)
@@ -137,25 +150,41 @@ def flatten(
 
     shapes = {p.name: _alone(p, fabrics.get(p.name)) for p in patches}
     ratio = agreed_ratios(patches, borders, shapes, limit=seam_strain)
-    flat = {}
+    flat, excess = {}, []
     for patch in patches:
         own = [s for s in borders if s.panel == patch.name and s.neighbour != FREE]
         fabric = fabrics.get(patch.name)
-        x = relax_panel(patch, own, ratio, shapes[patch.name], ease, fabric=fabric)
+        with _panel_named(patch):
+            x = relax_panel(patch, own, ratio, shapes[patch.name], ease, fabric=fabric)
+        wanted = max((abs(ease[s.name]) for s in own if s.name in ease), default=0.0)
+        excess.append(excess_of(patch, x, fabric, allowed=wanted))
         # A panel of a fabric has kept the direction in which its grain was laid.
         x = (_grain_up(patch, x) if fabric is None else x) * (1 - tension)
         flat[patch.name] = x * [1 - short.get(patch.name, 0.0), 1.0]
-    flattened = _report(surface, patches, borders, _side_by_side(flat), allowance, fabrics)
+    over = tuple(e for e in excess if e is not None)
+    for each in over:
+        warnings.warn(str(each), InputWarning, stacklevel=2)
+    flattened = _report(surface, patches, borders, _side_by_side(flat), allowance, fabrics, over)
     _check_seams(flattened, spoiled={*ease, *short})
     return flattened
 
 
+@contextmanager
+def _panel_named(patch: Patch) -> Iterator[None]:
+    """Name the panel in what goes wrong with it."""
+    try:
+        yield
+    except SeatlookError as error:
+        raise SeatlookError(f"panel {patch.name}: {error}") from None
+
+
 def _alone(patch: Patch, fabric: Fabric | None) -> FloatArray:
     """Flatten a panel by itself; of a fabric with its grain laid."""
-    x = flatten_patch(patch.vertices, patch.faces)
-    if fabric is None:
-        return x
-    return flatten_patch(patch.vertices, patch.faces, start=_grain_up(patch, x), fabric=fabric)
+    with _panel_named(patch):
+        x = flatten_patch(patch.vertices, patch.faces)
+        if fabric is None:
+            return x
+        return flatten_patch(patch.vertices, patch.faces, start=_grain_up(patch, x), fabric=fabric)
 
 
 def _report(
@@ -165,6 +194,7 @@ def _report(
     flat: dict[str, FloatArray],
     allowance: float,
     fabrics: Mapping[str, Fabric],
+    excess: tuple[Excess, ...],
 ) -> Flattened:
     """Collect pattern, poses and figures."""
     strain = np.empty((len(surface.faces), 2))
@@ -195,6 +225,7 @@ def _report(
             )
             for seam in pattern.seams
         ),
+        excess=excess,
     )
 
 

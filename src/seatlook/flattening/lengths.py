@@ -19,6 +19,8 @@ from seatlook.model import Fabric, FloatArray
 _EASE_REACH = 0.15
 _EASE_PRECISION = 2e-5  # [m]
 _EASE_ROUNDS = 12
+_LENGTH_PRECISION = 2e-5  # [m] of a sewing line; both lines of a seam then agree to 4e-5
+_LENGTH_ROUNDS = 8
 
 
 def agreed_ratios(
@@ -59,8 +61,7 @@ def relax_panel(
     Holding an eased side piece by piece would crumple it: a chain under compression buckles.
     """
     eased = [side for side in own if side.name in ease]
-    held = _held(patch, [side for side in own if side.name not in ease], ratio)
-    x = flatten_patch(patch.vertices, patch.faces, held, start=start, fabric=fabric)
+    x, held = _with_lengths(patch, [s for s in own if s not in eased], ratio, start, fabric)
     if not eased:
         return x
     agreed = np.array(
@@ -78,7 +79,32 @@ def relax_panel(
         x = flatten_patch(patch.vertices, patch.faces, held, growth=growth, start=x, fabric=fabric)
         before, lengths = lengths, _lengths(patch, x, eased)
         slope = np.where(step == 0, slope, (lengths - before) / np.where(step == 0, 1.0, step))
-    raise SeatlookError(f"panel {patch.name} cannot be stretched to the ease of its sewing lines")
+    raise SeatlookError("it cannot be stretched to the ease of its sewing lines")
+
+
+def _with_lengths(
+    patch: Patch,
+    own: Sequence[Side],
+    ratio: Mapping[str, FloatArray],
+    start: FloatArray,
+    fabric: Fabric | None,
+) -> tuple[FloatArray, HeldEdges]:
+    """Flatten a panel with the lengths of some sides held; return the lengths that did it too.
+
+    Lengths give way a little to a large strain beside them. Where that adds up to more than a
+    trace, what is missing is added to the lengths asked for (the method of multipliers).
+    """
+    held = _held(patch, own, ratio)
+    x = flatten_patch(patch.vertices, patch.faces, held, start=start, fabric=fabric)
+    goal = held.length
+    for _ in range(_LENGTH_ROUNDS):
+        missing = goal - np.linalg.norm(np.diff(x[held.vertices], axis=1)[:, 0], axis=1)
+        by_side = np.split(missing, np.cumsum([side.count for side in own])[:-1])
+        if max((abs(part.sum()) for part in by_side), default=0.0) < _LENGTH_PRECISION:
+            break
+        held = HeldEdges(vertices=held.vertices, length=held.length + missing)
+        x = flatten_patch(patch.vertices, patch.faces, held, start=x, fabric=fabric)
+    return x, held
 
 
 def _held(patch: Patch, own: Sequence[Side], ratio: Mapping[str, FloatArray]) -> HeldEdges:

@@ -1,4 +1,4 @@
-"""Flattening one patch: conformal start, then least elastic energy by Gauss-Newton steps."""
+"""Flattening one patch: least elastic energy by Gauss-Newton steps that turn no face over."""
 
 from __future__ import annotations
 
@@ -9,14 +9,28 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from seatlook.errors import SeatlookError
-from seatlook.flattening.fabric_sheet import Rows, fabric_rows, grain_strain
-from seatlook.mesh import face_areas, face_normals
+from seatlook.flattening.fabric_sheet import Gradient, Rows, combined, fabric_rows
+from seatlook.flattening.face_map import (
+    deformation,
+    face_axes,
+    gradient_of,
+    grown,
+    largest_step,
+)
+from seatlook.flattening.start import unfolded_start
+from seatlook.mesh import face_areas
 from seatlook.model import Fabric, FloatArray, IntArray
 
-_MAX_STEPS = 100
-_CONVERGED = 1e-7  # [m]; near the end steps shrink by 7 % at worst, so 2e-6 m are left
+_MAX_STEPS = 400
+_CONVERGED = 1e-7  # [m] that the last step moved at most
+_SETTLED = 1e-8  # share of the energy that the last step won
+_STRAINLESS = 1e-16  # mean squared strain that is none
+_SMALLEST_SCALE = 1e-4
 # Weight of a held edge length against the faces beside it: 1e4 holds lengths to about 1e-6.
 _HOLD = 1e4
+# Green's strain gives way where the plane is much smaller than the form: from this stretch on,
+# where the form stretches the panel by a quarter, faces resist more, the weight times as much.
+_CRUSHED, _RESISTANCE = 0.8, 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,129 +53,58 @@ def flatten_patch(
     """Return flat positions (n, 2) [m] of least strain energy with edges of given length.
 
     Without a fabric that of an isotropic sheet without Poisson effect, ``sum A |G|^2`` with the
-    Green strain ``G = (F^T F - I) / 2`` of the map from space to the plane. With one that of the
-    fabric laid onto the form, ``sum A psi(E)`` with the strain E of the map from the plane to
-    space, warp along the second axis; the patch then keeps the direction of ``start``.
+    Green strain ``G = (F^T F - I) / 2`` of the map from space to the plane, and more where the
+    form stretches the sheet by over a quarter. With one that of the fabric laid onto the form,
+    ``sum A psi(E)`` with the strain E of the map from the plane to space, warp along the second
+    axis; the patch then keeps the direction of ``start``. No face is ever turned over.
 
     Parameters
     ----------
     vertices : (n, 3) float64 [m]; faces : (m, 3) int64, a disk
     held : edges with a length of their own; None for none
     growth : (m, 3, 3)   symmetric stretch that each face is to have in the plane; None for none
-    start : (n, 2) [m]   first guess; None takes the conformal map
+    start : (n, 2) [m]   first guess without a turned face; None takes ``unfolded_start``
     fabric : warp, weft and shear curves; compression counts as tension does
 
     Raises
     ------
     SeatlookError
-        The steps do not converge, or the flat patch folds over.
+        The mesh has faces without area, or the steps do not converge; says where.
     """
     held = held or HeldEdges(vertices=np.zeros((0, 2), np.int64), length=np.zeros(0))
-    gradient = _gradient(vertices, faces)
+    gradient = gradient_of(vertices, faces)
     if growth is not None:
-        gradient = _grown(gradient, growth, _axes(vertices, faces))
-    area = face_areas(vertices, faces)
-    x = conformal_map(vertices, faces) if start is None else start
-    energy = _Energy(gradient, area, held, fabric, _chord(x))
+        gradient = grown(gradient, growth, face_axes(vertices, faces))
+    x = unfolded_start(vertices, faces) if start is None else start
+    energy = _Energy(gradient, face_areas(vertices, faces), held, fabric, _chord(x))
     value, residual, jacobian = energy.at(x)
     for _ in range(_MAX_STEPS):
-        normal = (jacobian.T @ jacobian).tocsc()
-        # Rigid motions cost nothing: a trace of damping makes the matrix regular.
-        damping = sp.identity(normal.shape[0], format="csc") * (1e-9 * normal.diagonal().mean())
-        step = -splu(normal + damping).solve(jacobian.T @ residual).reshape(-1, 2)
-        scale = 1.0
+        step = _step(residual, jacobian)
+        scale = largest_step(x, step, gradient)
         while True:
             trial = x + scale * step
             new, residual, jacobian = energy.at(trial)
-            if new <= value or scale < 1e-4:
+            if new <= value or scale < _SMALLEST_SCALE:
                 break
             scale /= 2
-        x = trial
-        converged = scale * np.abs(step).max() < _CONVERGED
-        value = new
-        if converged:
-            return _unfolded(x, gradient)
-    raise SeatlookError(f"flattening does not converge in {_MAX_STEPS} steps")
-
-
-def conformal_map(vertices: FloatArray, faces: IntArray) -> FloatArray:
-    """Return the least-squares conformal map (n, 2) of a disk, in true size.
-
-    Lévy, Petitjean, Ray, Maillot 2002, with the two vertices farthest apart pinned.
-    """
-    gx, gy = _gradient(vertices, faces)
-    weight = sp.diags(np.sqrt(face_areas(vertices, faces)))
-    # Cauchy-Riemann: grad v is grad u turned by 90 degrees.
-    rows = sp.vstack(
-        [sp.hstack([weight @ gx, -(weight @ gy)]), sp.hstack([weight @ gy, weight @ gx])]
-    ).tocsc()
-    n = len(vertices)
-    first = int(np.linalg.norm(vertices - vertices.mean(axis=0), axis=1).argmax())
-    second = int(np.linalg.norm(vertices - vertices[first], axis=1).argmax())
-    pinned = np.array([first, second, n + first, n + second])
-    value = np.array([0.0, np.linalg.norm(vertices[second] - vertices[first]), 0.0, 0.0])
-    free = np.setdiff1d(np.arange(2 * n), pinned)
-    pinned_part = rows[:, pinned] @ value
-    matrix = rows[:, free]
-    flat = np.empty(2 * n)
-    flat[pinned] = value
-    flat[free] = splu((matrix.T @ matrix).tocsc()).solve(-(matrix.T @ pinned_part))
-    x = flat.reshape(2, n).T
-    ratio = face_areas(vertices, faces).sum() / face_areas(x, faces).sum()
-    return np.ascontiguousarray(x * np.sqrt(ratio))
-
-
-def stretches(vertices: FloatArray, faces: IntArray, flat: FloatArray) -> FloatArray:
-    """Return the principal stretches (m, 2), small one first, of the map from flat to space."""
-    F = _deformation(flat, _gradient(vertices, faces))
-    return np.asarray(1 / np.linalg.svd(F, compute_uv=False))
-
-
-def strains_by_grain(vertices: FloatArray, faces: IntArray, flat: FloatArray) -> FloatArray:
-    """Return Green strains (m, 3) of the map from flat to space: warp, weft, angle 2 E12."""
-    return grain_strain(flat, _gradient(vertices, faces))
-
-
-def _gradient(vertices: FloatArray, faces: IntArray) -> tuple[sp.csr_array, sp.csr_array]:
-    """Operators (m, n) for the derivative along each face's own two axes."""
-    p = vertices[faces]
-    u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    axes = _axes(vertices, faces)
-    length = np.linalg.norm(u, axis=1)
-    vx, vy = np.einsum("kmd,md->km", axes, v)
-    zero = np.zeros_like(vx)
-    # Rows of the inverse edge matrix give the hat functions' gradients of corners 1 and 2.
-    dx = np.column_stack([zero, 1 / length, zero])
-    dy = np.column_stack([zero, -vx / (length * vy), 1 / vy])
-    dx[:, 0], dy[:, 0] = -dx.sum(axis=1), -dy.sum(axis=1)
-    rows = np.repeat(np.arange(len(faces)), 3)
-    shape = (len(faces), len(vertices))
-    return tuple(  # type: ignore[return-value]
-        sp.csr_array((d.ravel(), (rows, faces.ravel())), shape=shape) for d in (dx, dy)
+        if new > value:
+            return x  # rounding hides what a smaller step would win
+        x, won, value = trial, value - new, new
+        if scale * np.abs(step).max() < _CONVERGED or won < energy.negligible(value):
+            return x
+    worst = 1e3 * vertices[np.linalg.norm(step, axis=1).argmax()]
+    raise SeatlookError(
+        f"flattening does not converge in {_MAX_STEPS} steps and still moves near "
+        f"{worst.round(1)} mm"
     )
 
 
-def _axes(vertices: FloatArray, faces: IntArray) -> FloatArray:
-    """Unit vectors (2, m, 3) along each face's first edge and across it."""
-    along = vertices[faces[:, 1]] - vertices[faces[:, 0]]
-    along = along / np.linalg.norm(along, axis=1, keepdims=True)
-    return np.stack([along, np.cross(face_normals(vertices, faces), along)])
-
-
-def _grown(
-    gradient: tuple[sp.csr_array, sp.csr_array], growth: FloatArray, axes: FloatArray
-) -> tuple[sp.csr_array, sp.csr_array]:
-    """Derivatives with respect to lengths after growth: strain counts from the grown shape."""
-    inverse = np.linalg.inv(np.einsum("amd,mde,bme->mab", axes, growth, axes))
-    gx, gy = gradient
-    return tuple(
-        (sp.diags(inverse[:, 0, k]) @ gx + sp.diags(inverse[:, 1, k]) @ gy).tocsr() for k in (0, 1)
-    )
-
-
-def _deformation(x: FloatArray, gradient: tuple[sp.csr_array, sp.csr_array]) -> FloatArray:
-    """Return F (m, 2, 2) of the map from space to the plane."""
-    return np.stack([g @ x for g in gradient], axis=2)
+def _step(residual: FloatArray, jacobian: sp.csc_array) -> FloatArray:
+    """Return the Gauss-Newton step (n, 2)."""
+    normal = (jacobian.T @ jacobian).tocsc()
+    # Rigid motions cost nothing: a trace of damping makes the matrix regular.
+    damping = sp.identity(normal.shape[0], format="csc") * (1e-9 * normal.diagonal().mean())
+    return np.asarray(-splu(normal + damping).solve(jacobian.T @ residual).reshape(-1, 2))
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +128,7 @@ def _chord(x: FloatArray) -> _Chord:
 class _Energy:
     """What is minimised: the sheet's strain energy, held lengths, a fabric's direction."""
 
-    gradient: tuple[sp.csr_array, sp.csr_array]
+    gradient: Gradient
     area: FloatArray
     held: HeldEdges
     fabric: Fabric | None
@@ -196,16 +139,23 @@ class _Energy:
         root = np.sqrt(self.area)
         if self.fabric is None:
             residual, blocks = _isotropic_rows(x, self.gradient, root)
+            crushed, rows = _crushed_rows(x, self.gradient, root)
+            residual += crushed
+            blocks += rows
         else:
             residual, blocks = fabric_rows(x, self.gradient, root, self.fabric)
             turned, row = self._turned(x)
             residual.append(turned)
             blocks.append(row)
-        lengths, rows = _held_rows(x, self.held, self.area)
+        lengths, held = _held_rows(x, self.held, self.area)
         r = np.concatenate([*residual, lengths])
-        by_axis = sp.vstack([sp.hstack(pair) for pair in [*blocks, rows]]).tocsc()
+        by_axis = sp.vstack([sp.hstack(pair) for pair in [*blocks, held]]).tocsc()
         order = np.arange(2 * len(x)).reshape(2, -1).T.ravel()
         return 0.5 * float(r @ r), r, by_axis[:, order]
+
+    def negligible(self, value: float) -> float:
+        """Return what a step may win at most where the energy has come to rest."""
+        return _SETTLED * value + _STRAINLESS * float(self.area.sum())
 
     def _turned(self, x: FloatArray) -> tuple[FloatArray, list[sp.csr_array]]:
         """How far the chord has turned; the grain would turn with it."""
@@ -219,10 +169,8 @@ class _Energy:
         return weight * np.diff(x[chord.ends], axis=0) @ chord.across, row
 
 
-def _isotropic_rows(
-    x: FloatArray, gradient: tuple[sp.csr_array, sp.csr_array], root: FloatArray
-) -> Rows:
-    F = _deformation(x, gradient)
+def _isotropic_rows(x: FloatArray, gradient: Gradient, root: FloatArray) -> Rows:
+    F = deformation(x, gradient)
     gx, gy = gradient
     fx, fy = F[:, :, 0], F[:, :, 1]
     residual = [
@@ -231,14 +179,33 @@ def _isotropic_rows(
         root * (fx * fy).sum(axis=1) / np.sqrt(2),
     ]
     blocks = [
-        [sp.diags(root * fx[:, k]) @ gx for k in (0, 1)],
-        [sp.diags(root * fy[:, k]) @ gy for k in (0, 1)],
+        [sp.csr_array(sp.diags(root * fx[:, k]) @ gx) for k in (0, 1)],
+        [sp.csr_array(sp.diags(root * fy[:, k]) @ gy) for k in (0, 1)],
         [
-            sp.diags(root / np.sqrt(2)) @ (sp.diags(fx[:, k]) @ gy + sp.diags(fy[:, k]) @ gx)
+            sp.csr_array(
+                sp.diags(root / np.sqrt(2)) @ (sp.diags(fx[:, k]) @ gy + sp.diags(fy[:, k]) @ gx)
+            )
             for k in (0, 1)
         ],
     ]
     return residual, blocks
+
+
+def _crushed_rows(x: FloatArray, gradient: Gradient, root: FloatArray) -> Rows:
+    """Residuals against stretches s of the plane below a share, where Green's strain gives way.
+
+    ``share / s - 1``: without bound where a face has no area, and none above the share.
+    """
+    u, s, vt = np.linalg.svd(deformation(x, gradient))
+    weight = _RESISTANCE * root
+    small = np.minimum(s, _CRUSHED)
+    values = [weight * (_CRUSHED / small[:, k] - 1) for k in (0, 1)]
+    blocks = []
+    for k in (0, 1):
+        slope = np.where(s[:, k] < _CRUSHED, -weight * _CRUSHED / small[:, k] ** 2, 0.0)
+        along = slope[:, None] * vt[:, k]
+        blocks.append([combined(gradient, *(u[:, i, k, None] * along).T) for i in (0, 1)])
+    return values, blocks
 
 
 def _held_rows(
@@ -255,11 +222,3 @@ def _held_rows(
         )
         for k in (0, 1)
     ]
-
-
-def _unfolded(x: FloatArray, gradient: tuple[sp.csr_array, sp.csr_array]) -> FloatArray:
-    """Return ``x`` unless a face is turned over in it."""
-    turned = int((np.linalg.det(_deformation(x, gradient)) <= 0).sum())
-    if turned:
-        raise SeatlookError(f"flattening folds {turned} faces over: cut the panel along a dart")
-    return x

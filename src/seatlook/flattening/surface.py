@@ -112,7 +112,7 @@ def sides(patches: tuple[Patch, ...]) -> tuple[Side, ...]:
     """Split every patch's outline where three panels, or two and the outside, meet.
 
     A side is called ``PANEL.NEIGHBOUR``; when there are several, ``PANEL.NEIGHBOUR_2`` and so on
-    in outline order.
+    in outline order. An outline with one neighbour all round is one side, closed.
     """
     owner: dict[tuple[int, int], str] = {}
     for patch in patches:
@@ -128,13 +128,11 @@ def _sides_of(patch: Patch, owner: dict[tuple[int, int], str]) -> list[Side]:
     b = len(ring)
     across = [owner.get((ring[(i + 1) % b], ring[i]), FREE) for i in range(b)]
     starts = [i for i in range(b) if across[i] != across[i - 1]]
-    if not starts:
-        raise InputError.single(
-            f"panel {patch.name}", got="one neighbour all round", expected="at least two edges"
-        )
+    if not starts:  # closed: both panels of a seam all round start at the same vertex
+        starts = [int(np.argmin(ring))]
     result: list[Side] = []
     for k, start in enumerate(starts):
-        count = (starts[(k + 1) % len(starts)] - start) % b
+        count = (starts[(k + 1) % len(starts)] - start) % b or b
         again = sum(side.neighbour == across[start] for side in result)
         suffix = f"_{again + 1}" if again else ""
         at = [(start + i) % b for i in range(count + 1)]
