@@ -142,6 +142,29 @@ def test_a_limit_comes_from_the_curve_of_the_fabric():
     assert result.excess[0].limit == pytest.approx(np.sqrt(1.34) - 1, abs=2e-4)
 
 
+@pytest.mark.parametrize("shape", [box(0.24), cup(0.2), half_ellipsoid(0.09)])
+def test_a_fabric_neither_folds_nor_leaves_cloth_without_bound(shape):
+    """The energy of a fabric gives way to cloth that is much too much: faces grew 14 times."""
+    surface = one_panel(*shape)
+    with pytest.warns(InputWarning, match="panel CAP"):
+        result = flatten(surface, fabrics={"CAP": isotropic(8000.0)})
+    assert turned_faces(surface, result) == 0
+    assert result.strain.min() > -0.65
+    assert result.strain.max() < 1.2
+
+
+def test_an_outline_that_crosses_itself_is_named_with_panel_and_place():
+    """A spiral ramp of more than a turn lies over itself in the plane."""
+    turn = np.linspace(0, 2.4 * np.pi, 60)
+    rim = [r * np.column_stack([np.cos(turn), np.sin(turn), 0.2 * turn]) for r in (0.1, 0.2)]
+    rim[1][:, 2] = rim[0][:, 2]
+    a, b = np.arange(59), np.arange(59) + 60
+    faces = np.concatenate([np.column_stack([a, b, b + 1]), np.column_stack([a, b + 1, a + 1])])
+    vertices = np.concatenate(rim) * [1, 1, 0.3]
+    with pytest.raises(SeatlookError, match=r"panel CAP: its flat outline crosses .* near \[.* mm"):
+        flatten(one_panel(vertices, faces), allowance=0.0)
+
+
 def test_a_face_without_area_is_named_with_panel_and_place():
     vertices, faces = box(0.02)
     vertices = vertices.copy()

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from seatlook import mesh
-from seatlook.errors import InputError
+from seatlook.errors import InputError, SeatlookError
 from seatlook.flattening.surface import FREE, Patch, Side
 from seatlook.model import Edge, FloatArray, IntArray, Notch, Panel, Pattern, Seam
 
@@ -79,6 +79,7 @@ def sewing_pattern(
     panels = []
     for patch in patches:
         outline = flat[patch.name][patch.boundary]
+        _check_outline(patch, outline)
         own = [side for side in borders if side.panel == patch.name]
         notches = [
             Notch(position=point, kind="v", depth=_NOTCH_DEPTH)
@@ -99,6 +100,18 @@ def sewing_pattern(
     return Pattern(
         panels=tuple(panels), edges=MappingProxyType(_edges(patches, borders)), seams=seams
     )
+
+
+def _check_outline(patch: Patch, outline: FloatArray) -> None:
+    """Refuse a flat outline that crosses itself: it cannot be cut from one piece."""
+    pieces = shapely.linestrings(np.stack([outline, np.roll(outline, -1, axis=0)], axis=1))
+    crossing, _ = shapely.STRtree(pieces).query(pieces, predicate="crosses")
+    if len(crossing):
+        place = 1e3 * patch.vertices[patch.boundary[crossing[0]]]
+        raise SeatlookError(
+            f"panel {patch.name}: its flat outline crosses itself near {place.round(1)} mm: cut it"
+            " into two panels there"
+        )
 
 
 def pair(

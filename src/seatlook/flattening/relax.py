@@ -28,9 +28,9 @@ _STRAINLESS = 1e-16  # mean squared strain that is none
 _SMALLEST_SCALE = 1e-4
 # Weight of a held edge length against the faces beside it: 1e4 holds lengths to about 1e-6.
 _HOLD = 1e4
-# Green's strain gives way where the plane is much smaller than the form: from this stretch on,
-# where the form stretches the panel by a quarter, faces resist more, the weight times as much.
-_CRUSHED, _RESISTANCE = 0.8, 2.0
+# Green's strain gives way far from 0. Faces beyond this stretch, where the form strains the panel
+# by a quarter, resist more, the weight times as much.
+_BOUND, _RESISTANCE = 0.8, 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,7 +56,8 @@ def flatten_patch(
     Green strain ``G = (F^T F - I) / 2`` of the map from space to the plane, and more where the
     form stretches the sheet by over a quarter. With one that of the fabric laid onto the form,
     ``sum A psi(E)`` with the strain E of the map from the plane to space, warp along the second
-    axis; the patch then keeps the direction of ``start``. No face is ever turned over.
+    axis, and more where there is a quarter too much of it; the patch then keeps the direction of
+    ``start``. No face is ever turned over.
 
     Parameters
     ----------
@@ -139,17 +140,15 @@ class _Energy:
         root = np.sqrt(self.area)
         if self.fabric is None:
             residual, blocks = _isotropic_rows(x, self.gradient, root)
-            crushed, rows = _crushed_rows(x, self.gradient, root)
-            residual += crushed
-            blocks += rows
         else:
             residual, blocks = fabric_rows(x, self.gradient, root, self.fabric)
             turned, row = self._turned(x)
             residual.append(turned)
             blocks.append(row)
+        beyond, rows = _bounding_rows(x, self.gradient, root, fabric=self.fabric is not None)
         lengths, held = _held_rows(x, self.held, self.area)
-        r = np.concatenate([*residual, lengths])
-        by_axis = sp.vstack([sp.hstack(pair) for pair in [*blocks, held]]).tocsc()
+        r = np.concatenate([*residual, *beyond, lengths])
+        by_axis = sp.vstack([sp.hstack(pair) for pair in [*blocks, *rows, held]]).tocsc()
         order = np.arange(2 * len(x)).reshape(2, -1).T.ravel()
         return 0.5 * float(r @ r), r, by_axis[:, order]
 
@@ -191,18 +190,20 @@ def _isotropic_rows(x: FloatArray, gradient: Gradient, root: FloatArray) -> Rows
     return residual, blocks
 
 
-def _crushed_rows(x: FloatArray, gradient: Gradient, root: FloatArray) -> Rows:
-    """Residuals against stretches s of the plane below a share, where Green's strain gives way.
+def _bounding_rows(x: FloatArray, gradient: Gradient, root: FloatArray, *, fabric: bool) -> Rows:
+    """Residuals ``share / s - 1`` against stretches s of the plane below the share.
 
-    ``share / s - 1``: without bound where a face has no area, and none above the share.
+    A fabric's strain counts the other way, from the plane to the form: it resists crushed faces
+    without bound, and gives way where there is much too much cloth. Therefore ``share s - 1``.
     """
     u, s, vt = np.linalg.svd(deformation(x, gradient))
     weight = _RESISTANCE * root
-    small = np.minimum(s, _CRUSHED)
-    values = [weight * (_CRUSHED / small[:, k] - 1) for k in (0, 1)]
-    blocks = []
+    blocks, values = [], []
     for k in (0, 1):
-        slope = np.where(s[:, k] < _CRUSHED, -weight * _CRUSHED / small[:, k] ** 2, 0.0)
+        size = s[:, k] if fabric else 1 / s[:, k]
+        beyond = np.maximum(_BOUND * size - 1, 0.0)
+        values.append(weight * beyond)
+        slope = weight * _BOUND * np.where(beyond > 0, 1.0 if fabric else -(size**2), 0.0)
         along = slope[:, None] * vt[:, k]
         blocks.append([combined(gradient, *(u[:, i, k, None] * along).T) for i in (0, 1)])
     return values, blocks
