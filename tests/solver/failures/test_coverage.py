@@ -8,7 +8,7 @@ import pytest
 from seatlook import model
 from seatlook.results.conditions import conditions
 from seatlook.solver import solve
-from support.covers import cover, flat_foam, foam, row, sheet, vertices_as_points
+from support.covers import cover, flat_foam, foam, row, sheet, sphere, vertices_as_points
 
 pytestmark = pytest.mark.failure
 
@@ -62,6 +62,49 @@ def ridged(height):
         faces += [[c, d, 10 + d], [c, 10 + d, 10 + c]]  # rear
     faces += [[0, 5, 15], [0, 15, 10], [4, 14, 19], [4, 19, 9]]
     return foam(vertices, np.array(faces))
+
+
+def pillow(side):
+    """Two squares sewn all round over a lens of foam, 300 x 300 x 120 mm."""
+    vertices, faces = sphere(1.0, 4)
+    h = 0.018
+    X, T, x = sheet(side, side, h, z=0.08, at=(-side / 2, -side / 2))
+    back = X * [-1, 1] + [side, 0], T[:, ::-1], x * [1, 1, -1]
+    rim = np.unique(np.concatenate([row(X, k, end) for k in (0, 1) for end in (0.0, side)]))
+    seam = model.Stitching(
+        name="rim",
+        a=vertices_as_points(rim),
+        b=vertices_as_points(rim + len(X)),
+        length=np.full(len(rim), h),
+        stage="drop",
+    )
+    sewn = cover(
+        [(X, T, x), back],
+        foam=foam(vertices * [0.15, 0.15, 0.06], faces),
+        stitchings=[seam],
+        stages=[DROP],
+        h=h,
+        thickness=1e-3,
+        bending_warp=5e-5,
+        bending_weft=5e-5,
+        bending_twist=2.5e-5,
+    )
+    return solve(sewn)
+
+
+def test_a_taut_pillow_covers_its_foam():
+    s = pillow(0.30)
+    assert s.status == "converged", s.reason
+    assert 0.05 < s.figures["buried_10mm"] < 0.15
+    assert s.figures["bare_foam"] < 0.01
+
+
+def test_a_pillow_far_too_small():
+    """Its foam sticks out where the rim cuts through it; all forces are in balance."""
+    s = pillow(0.25)
+    assert s.figures["residual"] <= 1e-3
+    assert s.status == "not converged"
+    assert broken(s) == {"buried_10mm", "buried_20mm", "bare_foam"}
 
 
 def test_a_cover_on_its_foam_covers_it():
