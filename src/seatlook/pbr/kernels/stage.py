@@ -110,10 +110,18 @@ def frame(n, warp):
 
 
 @leaf()
-def _blend_one(values, faces, f, b1, b2):
-    """Value of a vertex table (n,) inside face f."""
+def _open_at(share, faces, f, b1, b2):
+    """Open share (n,) in face f; beside the face a line through the corners leaves 0 to 1."""
     i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
-    return (1.0 - b1 - b2) * values[i] + b1 * values[j] + b2 * values[k]
+    value = (1.0 - b1 - b2) * share[i] + b1 * share[j] + b2 * share[k]
+    return min(max(value, 0.0), 1.0)
+
+
+@leaf()
+def _light_at(table, faces, f, b1, b2):
+    """Gathered light (n, 3) in face f; beside a bright corner a line through it falls below 0."""
+    r, g, b = blend(table, faces, f, b1, b2)
+    return max(r, 0.0), max(g, 0.0), max(b, 0.0)
 
 
 @leaf()
@@ -132,7 +140,7 @@ def place_at(mesh, indirect, hit):
         n,
         warp,
         weft,
-        blend(indirect.diffuse, mesh.faces, f, b1, b2),
-        blend(indirect.mirrored, mesh.faces, f, b1, b2),
-        _blend_one(indirect.open, mesh.faces, f, b1, b2),
+        _light_at(indirect.diffuse, mesh.faces, f, b1, b2),
+        _light_at(indirect.mirrored, mesh.faces, f, b1, b2),
+        _open_at(indirect.open, mesh.faces, f, b1, b2),
     )
