@@ -152,6 +152,8 @@ def _control(file: Path, words: Words) -> dict[str, int]:
     if control["nmmat"] == _FEMZIP:
         raise refuse(file, "file", "a femzip archive", "a plain d3plot", "unpack it first")
     size = len(words)
+    if control["nmmat"] > size:
+        raise refuse(file, "NMMAT", control["nmmat"], f"at most {size} parts", "truncated?")
     if not 0 <= control["extra"] <= size - 64:
         raise refuse(file, "EXTRA", control["extra"], f"0 to {size - 64} words", "truncated?")
     more = words[64 : 64 + control["extra"]]
