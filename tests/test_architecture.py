@@ -20,10 +20,6 @@ from support.source import circles, functions, import_graph
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "seatlook"
 SOURCES = sorted(PACKAGE.rglob("*.py"))
-# To be given fewer parameters; then these go.
-KNOWN_WIDE = {
-    "seatlook.pbr.maps.face_map.render_map",
-}
 HEAVY = ("numba", "scipy", "vtk", "vtkmodules", "pyvista", "trimesh")
 
 
@@ -120,7 +116,7 @@ def test_functions_stay_short_with_few_parameters():
     long = [f for f in kernels if f.lines > 80] + [f for f in others if f.lines > 40]
     wide = {f"{f.module}.{f.name}" for f in others if f.parameters >= 8} - commands
     assert long == []
-    assert wide - KNOWN_WIDE == set()
+    assert wide == set()
 
 
 def _commands(group: App) -> Iterator[Callable[..., Any]]:

@@ -78,20 +78,6 @@ def test_nan_is_grey(solution):
     assert r == g == b
 
 
-def test_smooth_blends_and_flat_does_not(solution):
-    values = left_to_right(solution)
-    shown = {
-        smooth: render_map(
-            solution, values, camera=CAMERA, title="t", value_range=(-0.1, 0.1), smooth=smooth
-        )
-        .pixels[60, 60:100]
-        .astype(int)
-        for smooth in (False, True)
-    }
-    distinct = {k: len(np.unique(v, axis=0)) for k, v in shown.items()}
-    assert distinct[True] > 2 * distinct[False]
-
-
 def test_bar_is_drawn_and_bytes_repeat(solution, tmp_path):
     values = left_to_right(solution)
     first = render_map(solution, values, camera=CAMERA, title="W1", unit="1", value_range=(-1, 1))

@@ -32,7 +32,6 @@ def render_map(
     unit: str = "",
     value_range: tuple[float, float] | None = None,
     colormap: str | None = None,
-    smooth: bool = False,
 ) -> Picture:
     """Draw one value per face with a colour bar.
 
@@ -43,7 +42,6 @@ def render_map(
         negative for the diverging map; what lies outside takes the colour of the end
     colormap : ``viridis``, ``cividis``, ``magma``, or ``diverging`` (white at the middle); None:
         diverging where the range holds 0 inside, else viridis
-    smooth : blend over the vertices of each panel instead of one colour per element
 
     Returns
     -------
@@ -65,12 +63,8 @@ def render_map(
         colormap = "diverging" if inside else "viridis"
     low, high = _range(values, value_range, colormap)
     stage = studio(solution)
-    if smooth:
-        value = blended(stage, camera, _corner_values(values, solution))
-    else:
-        value = _flat(stage, camera, values)
     table = colour_table(colormap)
-    pixels = coloured(value, stage, camera, table, (low, high))
+    pixels = coloured(_flat(stage, camera, values), stage, camera, table, (low, high))
     return Picture(
         pixels=with_bar(pixels, table, (low, high), title, unit), value_range=(low, high)
     )
@@ -95,17 +89,6 @@ def _range(
     if not high > low:
         raise InputError.single("value_range", got=value_range, expected="low < high")
     return low, high
-
-
-def _corner_values(values: FloatArray, solution: Solution) -> FloatArray:
-    """Means (m, 3) of the faces around the corners of the solver's faces."""
-    faces, area = solution.cover.faces, solution.cover.rest_area
-    known = np.where(np.isfinite(values), area, 0.0)
-    n = len(solution.positions)
-    weight = np.bincount(faces.ravel(), np.repeat(known, 3), minlength=n)
-    total = np.bincount(faces.ravel(), np.repeat(known * np.nan_to_num(values), 3), minlength=n)
-    with np.errstate(invalid="ignore"):
-        return np.asarray((total / weight)[faces])
 
 
 def _flat(stage: Studio, camera: Camera, values: FloatArray) -> FloatArray:
