@@ -222,6 +222,15 @@ def test_dark_because_the_light_is_behind_is_no_error(card):
     assert image.radiance.max() == 0
 
 
+def test_shading_of_another_cover_is_refused():
+    """Its normals would be read beyond their end."""
+    with pytest.raises(InputError, match="another shape of the same cover"):
+        Studio(sheet(flat, steps=8), shading=sheet(flat, steps=4))
+    bent = sheet(lambda x, y: 0.1 * x**2, steps=8)
+    shaded = Studio(sheet(flat, steps=8), shading=bent).surface.mesh.normals
+    assert (shaded == Studio(bent).surface.mesh.normals).all()
+
+
 def test_unknown_quality(card):
     with pytest.raises(InputError, match=r"quality: got 'hihg', .*did you mean 'high'"):
         card.render(GREY, rig=OVERHEAD, camera=above(), quality="hihg")

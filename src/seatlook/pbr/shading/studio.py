@@ -39,6 +39,12 @@ class Studio:
     Faces seen are cached per camera, shadows per camera and light, open sky per mesh: another
     material costs only its shading, another light only its shadows. With ``shading`` the normals
     are those of another shape of the same cover; outlines and shadows stay.
+
+    Raises
+    ------
+    NoOffscreenContext, RenderError
+    InputError
+        ``shading`` is drawn with other faces: it is of another cover.
     """
 
     def __init__(
@@ -49,8 +55,8 @@ class Studio:
         self.thread = pack_thread(thread or solution.cover.thread)
         self.surface: Surface = drawn_surface(solution)
         if shading is not None:
-            normals = drawn_surface(shading).mesh.normals
-            self.surface = replace(self.surface, mesh=self.surface.mesh._replace(normals=normals))
+            mesh = _with_normals(self.surface.mesh, drawn_surface(shading).mesh)
+            self.surface = replace(self.surface, mesh=mesh)
         self._cache = Cache()
 
     # Maps need neither: they are made for the first picture.
@@ -284,6 +290,14 @@ def eye_of(camera: Camera, factor: int) -> surface.Eye:
     step = 2 * np.tan(np.radians(camera.vertical_fov_deg) / 2) / height
     first = forward - 0.5 * (width - 1) * step * right - 0.5 * (height - 1) * step * down
     return surface.Eye(np.array(camera.position), first, step * right, step * down)
+
+
+def _with_normals(mesh: surface.Mesh, other: surface.Mesh) -> surface.Mesh:
+    if not np.array_equal(mesh.faces, other.faces):
+        raise InputError.single(
+            "shading", got="another cover", expected="another shape of the same cover"
+        )
+    return mesh._replace(normals=other.normals)
 
 
 def _check(brightest: float, ids: np.ndarray, visibility: np.ndarray, camera: Camera) -> None:
