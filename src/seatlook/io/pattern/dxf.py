@@ -17,15 +17,15 @@ from ezdxf.lldxf.const import DXFError
 from shapely.errors import ShapelyError
 
 from seatlook.errors import InputError, InputWarning, Problem
-from seatlook.io.pattern.drawing import Drawing, open_drawing, refusal
-from seatlook.io.pattern.entities import Drawn, has_line, read_entities, read_texts
+from seatlook.io.pattern.drawing.drawing import Drawing, open_drawing, refusal
+from seatlook.io.pattern.drawing.entities import Drawn, has_line, read_entities, read_texts
+from seatlook.io.pattern.drawing.layers import BOUNDARY
+from seatlook.io.pattern.drawing.uses import find_uses, layers_of, unique, unique_names
 from seatlook.io.pattern.flat import name_in, split
-from seatlook.io.pattern.layers import BOUNDARY
 from seatlook.io.pattern.mirror import add_mirrored
-from seatlook.io.pattern.piece import Piece
+from seatlook.io.pattern.pieces.piece import Piece
 from seatlook.io.pattern.report import PatternReport, PieceReport
 from seatlook.io.pattern.units import Units, millimetres_per_unit, other_unit
-from seatlook.io.pattern.uses import find_uses, layers_of, unique, unique_names
 from seatlook.model import Panel
 
 SMALLEST_NOTCH = 0.005  # m

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.files import write_bytes
-from seatlook.io.pattern.layers import (
+from seatlook.io.pattern.drawing.layers import (
     BOUNDARY,
     CURVE,
     GRAIN,

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 import numpy as np
 import shapely
 
-from seatlook.io.pattern.entities import Drawn, Left, Mark
-from seatlook.io.pattern.join import Chain, join_outline
-from seatlook.io.pattern.layers import BOUNDARY, TURN
+from seatlook.io.pattern.drawing.entities import Drawn, Left, Mark
+from seatlook.io.pattern.drawing.layers import BOUNDARY, TURN
+from seatlook.io.pattern.pieces.join import Chain, join_outline
 from seatlook.model import FloatArray
 
 _NEAR_MM = 0.5  # outside an outline, of what is drawn on it

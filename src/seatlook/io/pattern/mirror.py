@@ -8,8 +8,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from seatlook.io.pattern.drawing.uses import unique
 from seatlook.io.pattern.report import PatternReport
-from seatlook.io.pattern.uses import unique
 from seatlook.mesh import arc_length
 from seatlook.model import FloatArray, Notch, Panel
 

@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from seatlook.io.pattern.entities import Left
-from seatlook.io.pattern.layers import UNREAD
+from seatlook.io.pattern.drawing.entities import Left
+from seatlook.io.pattern.drawing.layers import UNREAD
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

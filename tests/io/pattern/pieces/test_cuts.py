@@ -8,9 +8,9 @@ import pytest
 
 from seatlook import io
 from seatlook.assembly import assemble
-from seatlook.io.pattern.cuts import close_cuts
 from seatlook.io.pattern.dxf import read_dxf
 from seatlook.io.pattern.dxf_write import write_dxf
+from seatlook.io.pattern.pieces.cuts import close_cuts
 from seatlook.model import Notch, Pattern
 from support import scenes
 

@@ -11,7 +11,7 @@ import ezdxf.path
 import numpy as np
 from ezdxf.lldxf.encoding import decode_dxf_unicode
 
-from seatlook.io.pattern.layers import LINE_LAYERS, UNREAD, meaning
+from seatlook.io.pattern.drawing.layers import LINE_LAYERS, UNREAD, meaning
 from seatlook.model import FloatArray
 
 _LINES = ("LINE", "POLYLINE", "LWPOLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")

@@ -12,11 +12,8 @@ import shapely
 from scipy.spatial import cKDTree
 
 from seatlook.errors import InputError
-from seatlook.io.pattern.boundary import outermost, sort_boundary, take_sew_line
-from seatlook.io.pattern.cuts import DEEPEST_SLIT, with_cuts
-from seatlook.io.pattern.entities import Drawn, Left
-from seatlook.io.pattern.join import MEETING_MM, Chain, join, join_outline
-from seatlook.io.pattern.layers import (
+from seatlook.io.pattern.drawing.entities import Drawn, Left
+from seatlook.io.pattern.drawing.layers import (
     BOUNDARY,
     CUT_OUT,
     GRAIN,
@@ -28,7 +25,10 @@ from seatlook.io.pattern.layers import (
     SEW,
     TURN,
 )
-from seatlook.io.pattern.outline import (
+from seatlook.io.pattern.pieces.boundary import outermost, sort_boundary, take_sew_line
+from seatlook.io.pattern.pieces.cuts import DEEPEST_SLIT, with_cuts
+from seatlook.io.pattern.pieces.join import MEETING_MM, Chain, join, join_outline
+from seatlook.io.pattern.pieces.outline import (
     closed_outline,
     corners,
     distance_to,

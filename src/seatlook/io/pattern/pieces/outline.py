@@ -10,8 +10,8 @@ import shapely
 import shapely.ops
 
 from seatlook.errors import InputError
-from seatlook.io.pattern.cuts import close_cuts
-from seatlook.io.pattern.join import MEETING_MM, Chain, without_repeats
+from seatlook.io.pattern.pieces.cuts import close_cuts
+from seatlook.io.pattern.pieces.join import MEETING_MM, Chain, without_repeats
 from seatlook.model import FloatArray, IntArray
 
 CORNER_DEG = 30.0

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from seatlook.io.pattern.entities import Left
-from seatlook.io.pattern.join import GAP_MM, Chain
-from seatlook.io.pattern.layers import BOUNDARY
-from seatlook.io.pattern.sewline import parallel_inside
+from seatlook.io.pattern.drawing.entities import Left
+from seatlook.io.pattern.drawing.layers import BOUNDARY
+from seatlook.io.pattern.pieces.join import GAP_MM, Chain
+from seatlook.io.pattern.pieces.sewline import parallel_inside
 from seatlook.model import FloatArray, Notch
 
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from seatlook.errors import InputError, did_you_mean
-from seatlook.io.pattern.drawing import Drawing
-from seatlook.io.pattern.entities import has_line, matrix_of, read_texts
-from seatlook.io.pattern.layers import BOUNDARY
+from seatlook.io.pattern.drawing.drawing import Drawing
+from seatlook.io.pattern.drawing.entities import has_line, matrix_of, read_texts
+from seatlook.io.pattern.drawing.layers import BOUNDARY
 from seatlook.model import FloatArray
 
 _DEEPEST = 16  # blocks in blocks

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from seatlook.io.pattern.join import Chain
+from seatlook.io.pattern.pieces.join import Chain
 from seatlook.model import FloatArray
 
 _WIDEST_MM = 35.0  # allowance

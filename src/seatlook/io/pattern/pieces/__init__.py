@@ -1,0 +1,1 @@
+"""Lines of a drawing joined to outlines of panels, with notches and cuts."""
