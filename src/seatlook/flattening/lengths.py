@@ -98,7 +98,8 @@ def _with_lengths(
     x = flatten_patch(patch.vertices, patch.faces, held, start=start, fabric=fabric)
     goal = held.length
     for _ in range(_LENGTH_ROUNDS):
-        missing = goal - np.linalg.norm(np.diff(x[held.vertices], axis=1)[:, 0], axis=1)
+        edge = x[held.vertices[:, 1]] - x[held.vertices[:, 0]]
+        missing = goal - np.linalg.norm(edge, axis=1)
         by_side = np.split(missing, np.cumsum([side.count for side in own])[:-1])
         if max((abs(part.sum()) for part in by_side), default=0.0) < _LENGTH_PRECISION:
             break
