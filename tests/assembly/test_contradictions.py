@@ -10,6 +10,7 @@ from seatlook import io
 from seatlook.assembly import assemble
 from seatlook.assembly.contradictions import refuse_contradictions
 from seatlook.chain.case import Case
+from seatlook.chain.start import init
 from seatlook.errors import InputError
 from seatlook.seats import write_demo
 from support.scenes import two_panels
@@ -158,6 +159,14 @@ def test_a_frame_curve_through_the_foam(edited):
     (problem,) = problems(io.load_scene(path))
     assert re.match(r"'frame_front', \d\d mm inside the foam at \(", problem.got)
     assert problem.line == line_of(path, "curve = ")
+
+
+def test_a_scene_that_was_guessed_contradicts_nothing(tmp_path):
+    """Guessed curves lie round a foam of long faces, not only round its corners at that height."""
+    write_demo(tmp_path, element_size_mm=30.0, surface_size=0.04)
+    files = {name: tmp_path / name for name in ("pattern.dxf", "foam.obj", "seams.toml")}
+    init(files["pattern.dxf"], files["foam.obj"], tmp_path / "guess", seams=files["seams.toml"])
+    Case(io.load_scene(tmp_path / "guess" / "scene.toml")).check()
 
 
 @pytest.mark.parametrize(("factor", "ratio"), [(0.1, r"0\.005\d*"), (10.0, r"5\d\.\d")])

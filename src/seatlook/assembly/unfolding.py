@@ -22,7 +22,6 @@ LIFT = 0.020  # m above the foam's top, of the panel laid first
 CLEAR = 0.012  # m from the foam, of the panels folded down
 _STEEPEST = 85.0  # deg, of a fold
 _STEP = 5.0  # deg
-_BAND = 0.12  # share of the foam's height that its girth is taken from
 _NEAR = 0.03  # m; the foam's height is looked for within it
 _MEET = 0.08  # m; ends of free edges that near each other are sewn together
 _SAMPLES = 25  # points of a free edge and of its curve
@@ -259,10 +258,13 @@ def _reach(edge: FloatArray, outline: FloatArray) -> float:
 
 def _girth(foam: Foam, height: float) -> FloatArray:
     """Closed curve (k, 3) [m] round the foam at a height, the first point repeated."""
-    low, high = foam.vertices[:, 2].min(), foam.vertices[:, 2].max()
-    band = np.abs(foam.vertices[:, 2] - height)
-    near = foam.vertices[band < max(_BAND * (high - low), float(np.partition(band, 8)[8]))][:, :2]
-    hull = near[ConvexHull(near).vertices]
+    side = foam.vertices[foam.faces[:, [0, 1, 1, 2, 2, 0]]].reshape(-1, 2, 3)
+    start, end = side[:, 0], side[:, 1]
+    rise = end[:, 2] - start[:, 2]
+    crosses = ((start[:, 2] - height) * (end[:, 2] - height) <= 0.0) & (rise != 0.0)
+    share = (height - start[crosses, 2:]) / rise[crosses, None]
+    section = (start[crosses] + share * (end[crosses] - start[crosses]))[:, :2]
+    hull = section[ConvexHull(section).vertices]
     hull = np.concatenate([hull, hull[:1]])
     arc = arc_length(hull)
     at = np.linspace(0.0, arc[-1], 401)
