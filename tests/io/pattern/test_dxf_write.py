@@ -73,8 +73,9 @@ def test_same_pattern_gives_the_same_bytes(tmp_path):
     assert (tmp_path / "p.dxf").read_bytes() == (tmp_path / "q.dxf").read_bytes()
 
 
+@pytest.mark.filterwarnings("ignore:.*is the pattern out of scale")
 @settings(max_examples=25, deadline=None)
-@given(st.lists(st.floats(0.06, 1.4), min_size=3, max_size=40), st.floats(0, 6.28))
+@given(st.lists(st.floats(0.02, 1.4), min_size=3, max_size=40), st.floats(0, 6.28))
 def test_any_star_shaped_outline_reads_back(tmp_path_factory, radii, turn):
     angle = turn + 2 * np.pi * np.arange(len(radii)) / len(radii)
     outline = np.array(radii)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
