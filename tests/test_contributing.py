@@ -246,7 +246,7 @@ def test_recipe_reader_of_foams(clone):
         '    return trimesh.load_mesh(path.with_suffix(".obj"), process=False)\n',
     )
     clone.insert(
-        "io/mesh.py",
+        "io/surface/formats.py",
         "\n\ndef _refusal",
         '\nfrom seatlook.io.renamed import load_renamed\n\nREADERS[".block"] = load_renamed\n',
     )

@@ -11,10 +11,10 @@ import trimesh
 from seatlook.errors import InputError, InputWarning
 from seatlook.io.curves import read_curves
 from seatlook.io.material import materials_dir, read_foam_material, read_material
-from seatlook.io.mesh import read_foam
 from seatlook.io.pattern.dxf import read_dxf
 from seatlook.io.pattern.seams import read_seams
-from seatlook.io.surface import read_surface
+from seatlook.io.surface.design import read_surface
+from seatlook.io.surface.foam import read_foam
 
 DATA = Path(__file__).parents[1] / "data"
 FOAM = read_foam_material("foam-seat")

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.io.curves import write_curves
-from seatlook.io.surface import write_obj
+from seatlook.io.surface.design import write_obj
 from support.io_samples import box
 
 _ROOT = Path(__file__).parents[2]

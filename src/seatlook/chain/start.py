@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal, TypedDict, Unpack
+from typing import TypedDict, Unpack
 
 import numpy as np
 
@@ -16,9 +16,10 @@ from seatlook.assembly.seam_guess import Proposal, propose_seams
 from seatlook.assembly.unfolding import Layout, lay_out
 from seatlook.errors import InputError
 from seatlook.io.pattern.units import Units
+from seatlook.io.surface.axes import Unit, Up
 from seatlook.io.templates import write_template
 from seatlook.mesh.polyline import length
-from seatlook.model import FloatArray, Foam, FoamMaterial, Pattern
+from seatlook.model import FloatArray, Foam, Pattern
 from seatlook.solver import foam_wavelength
 
 SCENE, SEAMS, CURVES = "scene.toml", "seams.toml", "curves.toml"
@@ -30,15 +31,15 @@ _LONGEST_LINE = 1.05  # a scene refuses lines that are longer than their wire by
 class StartChoices(TypedDict, total=False):
     """How a first scene is made; all may be left out.
 
-    ``unit`` ("mm", "m") and ``up`` ("z", "y") of the foam's file; ``material`` and
+    ``unit`` ("mm", "cm", "m", "inch") and ``up`` ("z", "y") of the foam's file; ``material`` and
     ``foam_material``: supplied names or files; ``seams``: file taken instead of a guess; ``wires``:
     curves file of the wires in the foam; ``size``, ``units`` and ``encoding`` of the pattern, and
     ``grain_deg`` of its pieces without a grain line; ``top``: the panel on top, turned by
     ``turn_deg``; ``force``: write over a scene that is there.
     """
 
-    unit: Literal["mm", "m"] | None
-    up: Literal["z", "y"]
+    unit: Unit | None
+    up: Up | None
     material: str
     foam_material: str
     seams: Path | None
@@ -93,9 +94,10 @@ def init(
     material = choices.get("material", "leather-laminate")
     filling_name = choices.get("foam_material", "foam-seat")
     cloth, filling = io.read_material(material), io.read_foam_material(filling_name)
-    seams, wires, up = choices.get("seams"), choices.get("wires"), choices.get("up", "z")
+    seams, wires = choices.get("seams"), choices.get("wires")
     proposal = _sewn(cut, seams, choices)
-    body, unit, notes = _foam(body_file, filling, choices.get("unit"), up)
+    surface = io.read_foam_surface(body_file, unit=choices.get("unit"), up=choices.get("up"))
+    body = Foam(vertices=surface.vertices, faces=surface.faces, material=filling)
     turn = choices.get("turn_deg", 0.0)
     layout = lay_out(
         proposal.pattern, body, first=choices.get("top"), turn_deg=turn, free=proposal.free
@@ -112,7 +114,8 @@ def init(
         name=cut.stem,
         pattern=_seen_from(cut, folder),
         seams=SEAMS if seams is None else _seen_from(seams, folder),
-        size=choices.get("size"), units=choices.get("units"), unit=unit, up=up,
+        size=choices.get("size"), units=choices.get("units"),
+        unit=surface.axes.unit, up=surface.axes.up,
         encoding=choices.get("encoding"), grain_deg=choices.get("grain_deg"),
         foam=_seen_from(body_file, folder),
         material=_name_or_path(material, folder),
@@ -125,7 +128,7 @@ def init(
         scene=folder / SCENE,
         proposal=proposal,
         hooks=MappingProxyType(hooks),
-        notes=(*notes, *_size_notes(body, up)),
+        notes=_foam_notes(body_file, surface, guessed=choices.get("unit") is None),
     )
 
 
@@ -162,33 +165,20 @@ def _sewn(pattern: Path, seams: Path | None, choices: StartChoices) -> Proposal:
     )
 
 
-def _foam(
-    path: Path, material: FoamMaterial, unit: Literal["mm", "m"] | None, up: Literal["z", "y"]
-) -> tuple[Foam, Literal["mm", "m"], tuple[str, ...]]:
-    """Read the foam; without a unit, in the one in which it is as large as a seat."""
-    if unit is not None:
-        return io.read_foam(path, material=material, unit=unit, up=up), unit, ()
-    try:
-        return io.read_foam(path, material=material, unit="mm", up=up), "mm", ()
-    except InputError as error:
-        try:
-            body = io.read_foam(path, material=material, unit="m", up=up)
-        except InputError:
-            raise error from None
-    return body, "m", (f"{path}: read in metres, by its size",)
-
-
-def _size_notes(body: Foam, up: Literal["z", "y"]) -> tuple[str, ...]:
+def _foam_notes(path: Path, surface: io.FoamSurface, *, guessed: bool) -> tuple[str, ...]:
     """Say how large the foam is; one that stands on its edge is most often in other axes."""
-    width, depth, height = (round(1e3 * v) for v in np.ptp(body.vertices, axis=0))
-    size = f"foam: {width} mm wide, {depth} mm deep, {height} mm high"
-    if height <= min(width, depth):
-        return (size,)
-    other = "z" if up == "y" else "y"
-    return (
-        size,
-        f"it is higher than wide or deep: if its file's vertical axis is {other}, say --up {other}",
-    )
+    unit, up = surface.axes
+    width, depth, height = (round(1e3 * v) for v in np.ptp(surface.vertices, axis=0))
+    notes = [f"foam: {width} mm wide, {depth} mm deep, {height} mm high"]
+    if guessed and unit != "mm":
+        notes.insert(0, f"{path}: read in {unit}, by its format or size")
+    if height > min(width, depth):
+        other = "z" if up == "y" else "y"
+        notes.append(
+            "it is higher than wide or deep: "
+            f"if its file's vertical axis is {other}, say --up {other}"
+        )
+    return tuple(notes)
 
 
 def _hooks(pattern: Pattern, layout: Layout, curves: Mapping[str, FloatArray]) -> dict[str, str]:

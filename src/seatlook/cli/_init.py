@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from cyclopts import Parameter
 
 from seatlook.cli._output import Json, note, progress, table
 from seatlook.io.pattern.units import Units
+from seatlook.io.surface.axes import Unit, Up
 
 
 def init(
     pattern: Annotated[Path, Parameter(help="Cover pattern: AAMA / ASTM D6673 DXF.")],
-    foam: Annotated[Path, Parameter(help="Foam: closed surface, OBJ, STL or PLY.")],
+    foam: Annotated[Path, Parameter(help="Foam: closed surface, OBJ, STL, PLY or glTF.")],
     /,
     *,
     out: Annotated[Path, Parameter(help="Folder for the new scene.")],
-    unit: Literal["mm", "m"] | None = None,
-    up: Literal["z", "y"] = "z",
+    unit: Unit | None = None,
+    up: Up | None = None,
     material: str = "leather-laminate",
     foam_material: str = "foam-seat",
     seams: Path | None = None,
@@ -43,9 +44,9 @@ def init(
     Parameters
     ----------
     unit
-        Unit of the foam's file; guessed from its size if not given.
+        Unit of the foam's file; by its format and size if not given.
     up
-        Vertical axis of the foam's file.
+        Vertical axis of the foam's file; y in glTF, else z, if not given.
     material
         Cover material, from "seatlook materials list" or a file of your own.
     foam_material

@@ -58,9 +58,6 @@ if TYPE_CHECKING:
     from seatlook.io.material import (
         read_material as read_material,
     )
-    from seatlook.io.mesh import (
-        read_foam as read_foam,
-    )
     from seatlook.io.pattern.dxf import (
         read_dxf as read_dxf,
     )
@@ -82,17 +79,26 @@ if TYPE_CHECKING:
     from seatlook.io.scene.read import (
         load_scene as load_scene,
     )
-    from seatlook.io.surface import (
+    from seatlook.io.surface.design import (
         GroupedMesh as GroupedMesh,
     )
-    from seatlook.io.surface import (
+    from seatlook.io.surface.design import (
         read_surface as read_surface,
     )
-    from seatlook.io.surface import (
+    from seatlook.io.surface.design import (
         write_obj as write_obj,
     )
-    from seatlook.io.surface import (
+    from seatlook.io.surface.design import (
         write_surface as write_surface,
+    )
+    from seatlook.io.surface.foam import (
+        FoamSurface as FoamSurface,
+    )
+    from seatlook.io.surface.foam import (
+        read_foam as read_foam,
+    )
+    from seatlook.io.surface.foam import (
+        read_foam_surface as read_foam_surface,
     )
     from seatlook.io.table import (
         write_numbers as write_numbers,
@@ -103,7 +109,8 @@ if TYPE_CHECKING:
 
 # name -> module; loaded on first use, so that "seatlook --help" stays light.
 _PUBLIC: dict[str, str] = {
-    "GroupedMesh": "seatlook.io.surface",
+    "FoamSurface": "seatlook.io.surface.foam",
+    "GroupedMesh": "seatlook.io.surface.design",
     "export_cover": "seatlook.io.export.writers",
     "list_foam_materials": "seatlook.io.material",
     "list_materials": "seatlook.io.material",
@@ -112,7 +119,8 @@ _PUBLIC: dict[str, str] = {
     "read_curves": "seatlook.io.curves",
     "read_d3plot": "seatlook.io.lsdyna.d3plot.reader",
     "read_dxf": "seatlook.io.pattern.dxf",
-    "read_foam": "seatlook.io.mesh",
+    "read_foam": "seatlook.io.surface.foam",
+    "read_foam_surface": "seatlook.io.surface.foam",
     "read_foam_material": "seatlook.io.material",
     "read_keyword": "seatlook.io.lsdyna.deck.reader",
     "read_material": "seatlook.io.material",
@@ -121,22 +129,23 @@ _PUBLIC: dict[str, str] = {
     "read_result": "seatlook.io.export.result",
     "read_shapes": "seatlook.io.export.film",
     "read_shells": "seatlook.io.lsdyna.shells",
-    "read_surface": "seatlook.io.surface",
+    "read_surface": "seatlook.io.surface.design",
     "report_dxf": "seatlook.io.pattern.dxf",
     "write_animation": "seatlook.io.export.film",
     "write_curves": "seatlook.io.curves",
     "write_dxf": "seatlook.io.pattern.dxf_write",
     "write_dynain": "seatlook.io.lsdyna.dynain",
     "write_numbers": "seatlook.io.table",
-    "write_obj": "seatlook.io.surface",
+    "write_obj": "seatlook.io.surface.design",
     "write_result": "seatlook.io.export.result",
     "write_seams": "seatlook.io.pattern.seams",
     "write_shapes": "seatlook.io.export.film",
-    "write_surface": "seatlook.io.surface",
+    "write_surface": "seatlook.io.surface.design",
     "write_table": "seatlook.io.table",
 }
 
 __all__ = [
+    "FoamSurface",
     "GroupedMesh",
     "export_cover",
     "list_foam_materials",
@@ -148,6 +157,7 @@ __all__ = [
     "read_dxf",
     "read_foam",
     "read_foam_material",
+    "read_foam_surface",
     "read_keyword",
     "read_material",
     "read_panels",

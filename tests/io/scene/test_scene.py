@@ -8,7 +8,8 @@ import pytest
 from seatlook.io.curves import write_curves
 from seatlook.io.scene.keys import scene_keys
 from seatlook.io.scene.read import load_scene
-from seatlook.io.surface import write_obj
+from seatlook.io.surface.axes import METRES
+from seatlook.io.surface.design import write_obj
 from seatlook.wrinkle import figure_names
 from support.example_scene import BLOCKS, EXAMPLE, write_example_files
 from support.io_samples import box
@@ -354,18 +355,23 @@ def test_wire_that_leaves_the_foam_is_not_inside_it(load, folder):
     assert set(load().foam.curves) == {"wire left", "wire across", "frame front"}
 
 
-@pytest.mark.parametrize(("unit", "size"), [("mm", "0.0005"), ("m", "500")])
-def test_foam_in_the_wrong_unit(refused, folder, unit, size):
-    """0.5 m written in metres and read as millimetres, and 500 mm read as metres."""
-    scale = 1e-3 if unit == "mm" else 1e3
+@pytest.mark.parametrize(
+    ("unit", "written", "size", "fits"),
+    [
+        ("mm", "m", "0.0005", '0.5 m in "m"'),
+        ("m", "mm", "500", '0.5 m in "mm"'),
+        ("mm", "inch", "0.01969", '0.1969 m in "cm" or 0.5 m in "inch"'),
+    ],
+)
+def test_foam_in_the_wrong_unit(refused, folder, unit, written, size, fits):
+    """A box half a metre wide, read in another unit than it is written in."""
     corners, faces = box()
-    write_obj(scale * corners, faces, folder / "foam.obj")
-    got, line = refused(('unit = "mm"', 'unit = "mm"'))
-    assert got[0].startswith(
-        f'scene.toml:{line("unit = ")}: foam.unit: got "mm", by which foam.obj is {size} m wide, '
-        "expected 0.05 to 3 m"
+    write_obj(1e-3 * corners / METRES[written], faces, folder / "foam.obj")
+    got, line = refused(('unit = "mm"', f'unit = "{unit}"'))
+    assert got[0] == (
+        f'scene.toml:{line("unit = ")}: foam.unit: got "{unit}", by which foam.obj is {size} m '
+        f'wide, expected 0.05 to 3 m (unit = "{unit}" is taken; it is {fits})'
     )
-    assert 'is it "m"?' in got[0]
 
 
 def test_panels_placed_on_each_other(refused):

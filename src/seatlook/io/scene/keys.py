@@ -6,7 +6,7 @@ docs/reference/scene.md explains them.
 from __future__ import annotations
 
 from seatlook.io.colour import Colour
-from seatlook.io.pattern.units import UNITS
+from seatlook.io.pattern.units import UNITS as PATTERN_UNITS
 from seatlook.io.scene.views import CAMERA, RIG
 from seatlook.io.schema import (
     MM,
@@ -21,6 +21,7 @@ from seatlook.io.schema import (
     Text,
     Texts,
 )
+from seatlook.io.surface.axes import UNITS, UPS
 from seatlook.model.cover import RAMPS
 from seatlook.model.scene import ALLOWED, SCORE_MEASURES
 from seatlook.wrinkle import INDICES
@@ -37,7 +38,7 @@ KEYS: dict[str, Kind] = {
             "file": Text(required=True),
             "seams": Text(required=True),
             "size": Text(),
-            "units": Text(choices=UNITS),
+            "units": Text(choices=PATTERN_UNITS),
             "encoding": Text(),
             "grain_deg": Number(),
             "material": Text(),
@@ -47,8 +48,8 @@ KEYS: dict[str, Kind] = {
     "foam": Table(
         {
             "file": Text(required=True),
-            "unit": Text(choices=("mm", "m"), required=True),
-            "up": Text(choices=("z", "y"), default="z"),
+            "unit": Text(choices=UNITS, required=True),
+            "up": Text(choices=UPS),
             "material": Text(required=True),
             "curves": Text(),
         },
@@ -57,7 +58,8 @@ KEYS: dict[str, Kind] = {
     "design": Table(
         {
             "file": Text(),
-            "unit": Text(choices=("mm", "m"), default="mm"),
+            "unit": Text(choices=UNITS, default="mm"),
+            "up": Text(choices=UPS),
             "side": Text(choices=("middle", "visible"), default="middle"),
         }
     ),

@@ -15,7 +15,6 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.io.material import material_path, read_foam_material, read_material
-from seatlook.io.mesh import read_foam
 from seatlook.io.pattern.dxf import SMALLEST_NOTCH
 from seatlook.io.pattern.seams import read_pattern
 from seatlook.io.scene.changes import change
@@ -31,7 +30,9 @@ from seatlook.io.scene.keys import AS_BUILT, scene_keys
 from seatlook.io.scene.ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
 from seatlook.io.scene.views import make_cameras, make_rigs
 from seatlook.io.schema import known, read_table
-from seatlook.io.surface import read_surface
+from seatlook.io.surface.design import read_surface
+from seatlook.io.surface.foam import read_foam
+from seatlook.io.surface.formats import named_files
 from seatlook.io.texture_maps import map_files
 from seatlook.io.toml import Document, Key, read_document
 from seatlook.model import (
@@ -163,9 +164,17 @@ class _Reader:
             panels.append(panel)
         return replace(pattern, panels=tuple(panels))
 
+    def surface_file(self, table: str, name: str | None) -> Path | None:
+        """Count a surface file and those that it names."""
+        path = self.files.find((table, "file"), name)
+        for named in () if path is None else named_files(path):
+            with self.document.blame((table, "file")):
+                self.files.count(named)
+        return path
+
     def foam(self) -> Foam | None:
         row = self.row["foam"]
-        path = self.files.find(("foam", "file"), row["file"])
+        path = self.surface_file("foam", row["file"])
         curves = self.files.find(("foam", "curves"), row["curves"])
         if path is None or row["unit"] is None or row["material"] is None:
             return None
@@ -183,25 +192,29 @@ class _Reader:
                 curves=curves,
             )
         except InputError as error:
-            wrong = [p for p in error.problems if p.key == "size"]
-            for p in wrong:
-                got = f'"{row["unit"]}", by which {path.name} is {p.got} wide'
-                self.document.report(("foam", "unit"), got, p.expected, p.hint)
-            if not wrong:
-                self.document.note(("foam",), error)
+            self._surface_problems("foam", path, error)
             return None
 
     def design(self) -> Design | None:
         row = self.row["design"]
-        path = self.files.find(("design", "file"), row["file"])
+        path = self.surface_file("design", row["file"])
         if path is None or row["unit"] is None:
             return None
         try:
-            drawn = read_surface(path, unit=row["unit"])
+            drawn = read_surface(path, unit=row["unit"], up=row["up"])
         except InputError as error:
-            self.document.note(("design",), error)
+            self._surface_problems("design", path, error)
             return None
         return Design(**drawn._asdict(), visible=row["side"] == "visible")
+
+    def _surface_problems(self, table: str, path: Path, error: InputError) -> None:
+        """Report what is wrong with a surface; a wrong size is that of the unit in the scene."""
+        wrong = [p for p in error.problems if p.key == "size"]
+        for p in wrong:
+            got = f'"{self.row[table]["unit"]}", by which {path.name} is {p.got} wide'
+            self.document.report((table, "unit"), got, p.expected, p.hint)
+        if not wrong:
+            self.document.note((table,), error)
 
     def material_file(self, key: Key, name: str) -> Path | None:
         try:

@@ -1,23 +1,21 @@
-"""The design surface: OBJ with a group per panel."""
+"""The design surface: a file that names the panel of each face."""
 
 from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.files import write_text
 from seatlook.io.schema import shown
+from seatlook.io.surface.axes import Unit, Up, file_axes
+from seatlook.io.surface.formats import joined, read_parts
 from seatlook.io.toml import read_file
 from seatlook.model import FloatArray, IntArray
 
-Unit = Literal["mm", "m"]
-
-METRES: dict[Unit, float] = {"mm": 1e-3, "m": 1.0}
-SMALLEST_M, LARGEST_M = 0.05, 3.0
 _SAME_M = 1e-6
 
 
@@ -36,35 +34,77 @@ class GroupedMesh(NamedTuple):
     panel_names: tuple[str, ...]
 
 
-def read_surface(path: Path, *, unit: Unit, ungrouped: str | None = None) -> GroupedMesh:
-    """Read a design surface: an OBJ file in which ``g NAME`` names the panel of the next faces.
+def read_surface(
+    path: Path, *, unit: Unit | None = None, up: Up | None = None, ungrouped: str | None = None
+) -> GroupedMesh:
+    """Read a design surface whose file names the panel of each face.
 
-    Polygons are cut into fans. The surface need not be closed. Panels that were written with
-    corners of their own share them again where they agree within 1 um. Faces before the first group
-    belong to the panel ``ungrouped``; without such a name they are refused.
+    In OBJ that is ``g NAME``, or ``o NAME`` in a file without ``g``; in glTF the name of the node.
+    STL and PLY know no names. Polygons are cut into fans. The surface need not be closed. Panels
+    that were written with corners of their own share them again where they agree within 1 um.
+
+    Parameters
+    ----------
+    path : OBJ, STL, PLY or glTF
+    unit, up : of the file; by its format and size if not given (``file_axes``)
+    ungrouped : panel of the faces without a name; where none is given, they are refused
 
     Raises
     ------
     InputError
-        For a face without a group, outside the vertices or of fewer than three, for a number that
-        is none, and for a size not within 0.05 to 3 m; with the line, all together.
+        For a face without a name, outside the vertices or of fewer than three, for a number that
+        is none, and for a size not within 0.05 to 3 m; with the line of an OBJ, all together.
     """
+    drawn = _read_obj(path, ungrouped) if path.suffix.lower() == ".obj" else _named(path, ungrouped)
+    axes = file_axes(path, drawn.vertices[np.unique(drawn.faces)], unit, up)
+    vertices, corner = _welded(axes.world(drawn.vertices))
+    return drawn._replace(vertices=vertices, faces=corner[drawn.faces])
+
+
+def _named(path: Path, ungrouped: str | None) -> GroupedMesh:
+    """Read the objects of a file as panels."""
+    parts = read_parts(path)
+    names = [part.name or ungrouped for part in parts]
+    if None in names:
+        raise InputError.single(
+            "panels",
+            got=f"a {path.suffix} file, which knows no names",
+            expected="an OBJ with a group per panel, or a glTF with a node per panel",
+            file=path,
+            hint="seatlook flatten cuts it along --seam-lines",
+        )
+    panel_names = tuple(dict.fromkeys(str(name) for name in names))
+    numbers = [panel_names.index(str(name)) for name in names]
+    vertices, faces = joined(parts)
+    return GroupedMesh(
+        vertices=vertices,
+        faces=faces,
+        panel=np.repeat(numbers, [len(part.faces) for part in parts]).astype(np.int64),
+        panel_names=panel_names,
+    )
+
+
+def _read_obj(path: Path, ungrouped: str | None) -> GroupedMesh:
     lines = read_file(path).decode(errors="replace").splitlines()
-    reader = _ObjReader(path)
+    has_groups = any(line.split(None, 1)[:1] == ["g"] for line in lines)
+    reader = _ObjReader(path, "g" if has_groups else "o")
     if ungrouped is not None:
         reader.open_group(ungrouped)
+    words: list[str] = []
     for number, line in enumerate(lines, start=1):
-        reader.read(number, line.split("#", 1)[0].split())
-    mesh = reader.result(METRES[unit])
-    check_size(path, mesh.vertices, unit)
-    return mesh
+        words += line.split("#", 1)[0].removesuffix("\\").split()
+        if not line.endswith("\\"):  # a backslash continues the line
+            reader.read(number, words)
+            words = []
+    return reader.result()
 
 
 class _ObjReader:
     """The lines of an OBJ file, one after the other."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, group_word: str) -> None:
         self.path = path
+        self.group_word = group_word
         self.vertices: list[list[float]] = []
         self.faces: list[list[int]] = []
         self.panel: list[int] = []
@@ -73,13 +113,13 @@ class _ObjReader:
         self.group: int | None = None
 
     def read(self, number: int, words: list[str]) -> None:
-        if not words or words[0] not in ("v", "f", "g"):
+        if not words or words[0] not in ("v", "f", self.group_word):
             return
         kind, values = words[0], words[1:]
         try:
             if kind == "v":
                 self._vertex(values)
-            elif kind == "g":
+            elif kind == self.group_word:
                 self.open_group(" ".join(values))
             else:
                 self._face(values)
@@ -121,16 +161,15 @@ class _ObjReader:
             self.faces.append([corners[0], b, c])
             self.panel.append(self.group)
 
-    def result(self, scale: float) -> GroupedMesh:
+    def result(self) -> GroupedMesh:
         if self.errors:
             raise InputError(p for error in self.errors for p in error.problems)
         if not self.faces:
             raise InputError.single("f", got="no face", expected="faces", file=self.path)
         used = sorted(set(self.panel))
-        vertices, corner = _welded(scale * np.array(self.vertices))
         return GroupedMesh(
-            vertices=vertices,
-            faces=corner[np.array(self.faces, dtype=np.int64)],
+            vertices=np.array(self.vertices),
+            faces=np.array(self.faces, dtype=np.int64),
             panel=np.searchsorted(used, self.panel).astype(np.int64),
             panel_names=tuple(self.names[i] for i in used),
         )
@@ -166,17 +205,3 @@ def _vertex_rows(vertices: FloatArray) -> str:
 
 def _face_rows(faces: IntArray) -> str:
     return "\n".join(f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist())
-
-
-def check_size(path: Path, vertices: FloatArray, unit: Unit) -> None:
-    """Refuse a seat that cannot be one: most often the unit is wrong."""
-    size = float(np.ptp(vertices, axis=0).max())
-    if not SMALLEST_M <= size <= LARGEST_M:
-        other = "m" if unit == "mm" else "mm"
-        raise InputError.single(
-            "size",
-            got=f"{size:.4g} m",
-            expected=f"{SMALLEST_M:g} to {LARGEST_M:g} m",
-            file=path,
-            hint=f'unit = "{unit}" is taken; is it "{other}"?',
-        )

@@ -4,8 +4,9 @@ import trimesh
 
 from seatlook.io.curves import read_curves, write_curves
 from seatlook.io.material import read_foam_material
-from seatlook.io.mesh import read_foam
-from seatlook.io.surface import GroupedMesh, read_surface, write_obj, write_surface
+from seatlook.io.surface.design import GroupedMesh, read_surface, write_obj, write_surface
+from seatlook.io.surface.foam import read_foam, read_foam_surface
+from seatlook.mesh import face_vectors
 
 FOAM = read_foam_material("foam-seat")
 
@@ -22,18 +23,86 @@ def volume(foam):
     return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
 
 
-@pytest.mark.parametrize("suffix", [".obj", ".stl", ".ply"])
-@pytest.mark.parametrize(("unit", "scale"), [("mm", 1000.0), ("m", 1.0)])
+@pytest.mark.parametrize("suffix", [".obj", ".stl", ".ply", ".glb", ".gltf"])
+@pytest.mark.parametrize(
+    ("unit", "scale"), [("mm", 1000.0), ("cm", 100.0), ("m", 1.0), ("inch", 1 / 0.0254)]
+)
 def test_formats_and_units(tmp_path, suffix, unit, scale):
     mesh = tube()
     mesh.apply_scale(scale)
     path = tmp_path / f"foam{suffix}"
-    mesh.export(path)
-    foam = read_foam(path, material=FOAM, unit=unit)
+    _export(mesh, path)
+    foam = read_foam(path, material=FOAM, unit=unit, up="z")
     assert foam.vertices.shape == (8, 3)
     assert len(foam.faces) == 12
     assert volume(foam) == pytest.approx(0.5 * 0.4 * 0.1, rel=1e-5)
     assert foam.vertices.max(axis=0) == pytest.approx([0.26, 0.22, 0.08], abs=1e-6)
+
+
+def _export(mesh, path):
+    if path.suffix == ".gltf":  # a file of numbers beside it
+        for name, content in trimesh.Scene(mesh).export(file_type="gltf").items():
+            (path if name.endswith("gltf") else path.parent / name).write_bytes(content)
+    else:
+        mesh.export(path)
+
+
+def test_gltf_is_in_metres_and_y_up(tmp_path):
+    upright = tube()
+    upright.vertices = upright.vertices[:, [0, 2, 1]] * [1, 1, -1]
+    upright.export(tmp_path / "foam.glb")
+    surface = read_foam_surface(tmp_path / "foam.glb")
+    assert surface.axes == ("m", "y")
+    assert surface.vertices.max(axis=0) == pytest.approx([0.26, 0.22, 0.08], abs=1e-6)
+
+
+def test_gltf_objects_stand_where_their_nodes_put_them(tmp_path):
+    """Mirrored and moved nodes, as halves of a seat are; each is a panel of a design surface."""
+    half = trimesh.creation.box(extents=(0.2, 0.1, 0.3))
+    half.apply_translation([0.1, 0, 0])
+    half.update_faces(np.arange(12) != 3)
+    scene = trimesh.Scene()
+    scene.add_geometry(half, node_name="LEFT", geom_name="half")
+    mirrored = np.diag([-1.0, 1.0, 1.0, 1.0])
+    scene.graph.update(frame_to="RIGHT", geometry="half", matrix=mirrored)
+    scene.export(tmp_path / "halves.glb")
+    drawn = read_surface(tmp_path / "halves.glb")
+    assert sorted(drawn.panel_names) == ["LEFT", "RIGHT"]
+    names = np.array(drawn.panel_names)[drawn.panel]
+    for name, sign in (("LEFT", 1.0), ("RIGHT", -1.0)):
+        faces = drawn.faces[names == name]
+        assert len(faces) == 11
+        assert (sign * drawn.vertices[faces][..., 0] > -1e-7).all()
+        middle, half_way = drawn.vertices[faces].mean(axis=1), np.array([0.1 * sign, 0, 0])
+        outward = ((middle - half_way) * face_vectors(drawn.vertices, faces)).sum(axis=1)
+        assert (outward > 0).all()
+
+
+def test_compressed_gltf_is_refused_with_a_way_on(tmp_path, problems):
+    header = b'{"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]}'
+    (tmp_path / "a.gltf").write_bytes(header)
+    assert problems(read_foam, tmp_path / "a.gltf", material=FOAM) == [
+        "a.gltf: file: got KHR_draco_mesh_compression, expected vertices that are not compressed "
+        "(export it again without compression)"
+    ]
+
+
+@pytest.mark.parametrize(("scale", "unit"), [(1000.0, "mm"), (1.0, "m"), (5.0, "m")])
+def test_the_size_tells_mm_from_m(tmp_path, scale, unit):
+    mesh = tube()
+    mesh.apply_scale(scale)
+    mesh.export(tmp_path / "foam.ply")
+    assert read_foam_surface(tmp_path / "foam.ply").axes == (unit, "z")
+
+
+def test_a_size_that_tells_no_unit_is_named_in_each(tmp_path, problems):
+    mesh = tube()
+    mesh.apply_scale(1 / 0.0254)
+    mesh.export(tmp_path / "foam.ply")
+    assert problems(read_foam_surface, tmp_path / "foam.ply") == [
+        'foam.ply: unit: got nothing, and a file 19.69 wide; it is 0.1969 m in "cm" or 0.5 m in '
+        '"inch", expected one of mm, cm, m, inch'
+    ]
 
 
 def test_inward_faces_are_turned(tmp_path):
@@ -62,10 +131,10 @@ def test_surface_not_closed(tmp_path, problems):
     mesh = tube()
     write_obj(mesh.vertices, mesh.faces[1:], tmp_path / "foam.obj")
     (message,) = problems(read_foam, tmp_path / "foam.obj", material=FOAM, unit="mm")
-    assert message.startswith(
-        "foam.obj: surface: got 3 edges without exactly two faces, the first at ["
+    assert message == (
+        "foam.obj: surface: got 3 edges without exactly two faces, the first at "
+        "(-240, -180, 30) mm, expected a closed surface"
     )
-    assert message.endswith("expected a closed surface")
 
 
 def test_one_face_turned(tmp_path, problems):
@@ -108,7 +177,7 @@ def test_size_that_cannot_be_a_seat(tmp_path, problems, unit, other, size):
     mesh.export(tmp_path / "foam.ply")
     assert problems(read_foam, tmp_path / "foam.ply", material=FOAM, unit=unit) == [
         f'foam.ply: size: got {size}, expected 0.05 to 3 m (unit = "{unit}" is taken; '
-        f'is it "{other}"?)'
+        f'it is 0.5 m in "{other}")'
     ]
 
 
@@ -117,7 +186,7 @@ def test_size_that_cannot_be_a_seat(tmp_path, problems, unit, other, size):
 def test_file_without_faces(write, problems, name, content):
     (message,) = problems(read_foam, write(name, content), material=FOAM, unit="mm")
     assert message.startswith(f"{name}: file: got ")
-    assert message.endswith("expected a surface of triangles (.obj, .stl, .ply)")
+    assert message.endswith("expected a surface of triangles (.obj, .stl, .ply, .glb, .gltf)")
 
 
 @pytest.mark.parametrize(
@@ -137,7 +206,7 @@ def test_faces_that_fit_no_vertices(write, problems, name, content):
 
 def test_unknown_format(write, problems):
     assert problems(read_foam, write("a.step", "x"), material=FOAM, unit="mm") == [
-        "a.step: file: got '.step', expected one of .obj, .stl, .ply"
+        "a.step: file: got '.step', expected one of .obj, .stl, .ply, .glb, .gltf"
     ]
 
 
@@ -166,6 +235,36 @@ def test_obj_dialects(write):
     assert surface.faces.tolist() == [[0, 1, 2], [0, 2, 3], [0, 2, 3]]
     assert surface.panel.tolist() == [0, 0, 1]
     assert surface.vertices[2].tolist() == [0.1, 0.1, 0.0]
+
+
+def test_objects_are_panels_where_an_obj_has_no_groups(write):
+    text = "o A\nv 0 0 0\nv 100 0 0\nv 100 100 0\nv 0 100 0\nf 1 2 3\no B\nf 1 3 \\\n4\n"
+    surface = read_surface(write("s.obj", text), unit="mm")
+    assert surface.panel_names == ("A", "B")
+    assert surface.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".ply"])
+def test_a_format_without_names_is_one_panel_or_refused(tmp_path, problems, suffix):
+    tube().export(tmp_path / f"s{suffix}")
+    drawn = read_surface(tmp_path / f"s{suffix}", ungrouped="PANEL")
+    assert drawn.panel_names == ("PANEL",)
+    assert drawn.faces.shape == (12, 3)
+    assert len(drawn.vertices) == 8
+    (message,) = problems(read_surface, tmp_path / f"s{suffix}")
+    assert message.startswith(f"s{suffix}: panels: got a {suffix} file, which knows no names")
+
+
+def test_a_design_surface_of_any_unit_and_axis(tmp_path):
+    mesh = tube()
+    for unit, scale in (("cm", 100.0), ("inch", 1 / 0.0254)):
+        upright = mesh.copy()
+        upright.vertices = mesh.vertices[:, [0, 2, 1]] * [scale, scale, -scale]
+        upright.export(tmp_path / "s.obj")
+        drawn = read_surface(tmp_path / "s.obj", unit=unit, up="y", ungrouped="P")
+        assert np.sort(drawn.vertices, axis=0) == pytest.approx(
+            np.sort(mesh.vertices, axis=0), abs=2e-6
+        )
 
 
 def test_bad_obj_names_every_line(write, problems):

@@ -1,0 +1,1 @@
+"""Surface files: foams and design surfaces in, OBJ out."""
