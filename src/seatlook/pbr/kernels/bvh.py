@@ -215,6 +215,13 @@ def occluded(bvh, ox, oy, oz, dx, dy, dz, near, far, stack):
 
 
 @leaf()
+def hidden_at(bvh, ox, oy, oz, dx, dy, dz, stack):
+    """Distance at which the triangle that :func:`occluded` found last crosses the same ray."""
+    t, _, _ = _triangle(bvh, stack[-1], ox, oy, oz, dx, dy, dz)
+    return t
+
+
+@leaf()
 def nearest(bvh, ox, oy, oz, dx, dy, dz, near, stack):
     """First triangle on the ray: (index in leaf order or -1, distance, weight, weight)."""
     ix, iy, iz = _inverse(dx), _inverse(dy), _inverse(dz)

@@ -15,7 +15,7 @@ from seatlook.errors import InputError, RenderError
 from seatlook.model import Camera, Light, Rig, Solution, Thread
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.cache import Cache
-from seatlook.pbr.kernels import bvh, coherent, rays, shade, stage, stitch, surface
+from seatlook.pbr.kernels import bvh, coherent, shade, shadow, stage, stitch, surface
 from seatlook.pbr.light.exposure import ev100
 from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_of
 from seatlook.pbr.picture import Image
@@ -29,8 +29,6 @@ from seatlook.pbr.shading.surface import Surface, drawn_surface
 _CARD = 0.18
 # Foam in front of the cover by less than this [m] is a coarse foam face that cuts through it.
 _COMPRESSED = 0.02
-# How far [m] above the surface an occluder is expected, to know how wide a shadow's edge may be.
-_OCCLUDER = 0.04
 
 
 class Studio:
@@ -199,7 +197,7 @@ class Studio:
         share = np.full(ids.shape, 255, dtype=np.uint8)
         if level.rays == 0:
             return share
-        rays.shadows(
+        shadow.shadows(
             self._bvh,
             self.surface.mesh,
             eye_of(camera, level.factor),
@@ -208,7 +206,6 @@ class Studio:
             k,
             level.factor,
             level.rays,
-            _edge_width(rig.lights[k], camera),
             share,
         )
         return share
@@ -305,16 +302,6 @@ def _check(brightest: float, ids: np.ndarray, visibility: np.ndarray, camera: Ca
         raise RenderError(f"camera {camera.name}: the picture holds values that are not finite")
     if brightest <= 0 and (visibility[:, ids >= 0] > 0).any():
         raise RenderError(f"camera {camera.name}: the picture is black though a light reaches it")
-
-
-def _edge_width(light: Light, camera: Camera) -> int:
-    """Pixels over which the edge of a light's shadow may spread."""
-    distance = float(np.linalg.norm(camera.target - camera.position))
-    pixel = distance * 2 * np.tan(np.radians(camera.vertical_fov_deg) / 2) / camera.size[1]
-    half = light.size / 2
-    if light.near:
-        half = light.size / max(float(np.linalg.norm(light.vector - camera.target)), 1e-6)
-    return int(np.clip(np.ceil(np.tan(min(half, 1.0)) * _OCCLUDER / pixel), 1, 64))
 
 
 def _light_key(light: Light) -> Hashable:
