@@ -146,7 +146,15 @@ def test_every_line_that_lies_off_or_ends_nowhere_is_named():
         for name in "AB"
     ]
     short = points((0, 0.1), (0.2, 0.1))
-    with pytest.raises(InputError, match=r"curve\.A\.points_mm\[1\]: got an end 100\.0 mm away"):
-        lay_on(vertices, faces, {"A": short, "B": points((0, 0.2), (LENGTH, 0.2))}, tolerance=2e-3)
-    with pytest.raises(InputError, match=r"expected an end within 2 mm of the border or another"):
-        lay_on(vertices, faces, {"A": short}, tolerance=0.002)
+    with pytest.raises(InputError, match=r"curve\.A\.points_mm\[1\]: got an end 8\.0 mm away"):
+        lay_on(
+            vertices, faces, {"A": short, "B": points((0, 0.108), (LENGTH, 0.108))}, tolerance=2e-3
+        )
+    with pytest.raises(InputError, match=r"or as the tip of a dart 10 mm clear of them"):
+        lay_on(vertices, faces, {"A": points((0, 0.1), (LENGTH - 0.009, 0.1))}, tolerance=0.002)
+
+
+def test_the_tip_of_a_dart_stays_where_it_is():
+    vertices, faces = plane("uns")
+    dart = points((0, 0.1), (0.2, 0.1))
+    assert lay_on(vertices, faces, {"A": dart}, tolerance=0.002)["A"].tolist() == dart.tolist()

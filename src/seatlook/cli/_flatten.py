@@ -43,7 +43,8 @@ def flatten(
     ----------
     seam_lines
         Curves file, [curve.NAME] points_mm, of lines within 2 mm of the surface, along which it is
-        cut into panels. Each ends on the border or on another; its seam takes its name.
+        cut into panels. Each ends on the border or on another, or as a dart inside a panel; its
+        seam takes its name.
     unit
         Unit of the surface file.
     ease

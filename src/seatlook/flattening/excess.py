@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from seatlook import mesh
 from seatlook.flattening.face_map import strains_by_grain, stretches
-from seatlook.flattening.surface import Patch
+from seatlook.flattening.surface import Patch, millimetres
 from seatlook.model import Curve, Fabric, FloatArray, IntArray
 
 # 17 N on a strip of 50 mm: what the laminate of a car seat cover takes at 5 %
@@ -46,9 +46,9 @@ class Excess:
     def __str__(self) -> str:
         amount = f"{100 * abs(self.strain):.1f} %"
         what = f"is stretched by {amount}" if self.strain > 0 else f"has {amount} too much cloth"
-        mouth, tip = (_millimetres(point) for point in (self.dart[0], self.dart[-1]))
+        mouth, tip = (millimetres(point) for point in (self.dart[0], self.dart[-1]))
         return (
-            f"panel {self.panel} {what} near {_millimetres(self.place)} mm, and is over "
+            f"panel {self.panel} {what} near {millimetres(self.place)} mm, and is over "
             f"{100 * self.limit:.1f} % on {1e4 * self.area:.0f} cm2: cut it, or sew a dart from "
             f"{mouth} to {tip} mm"
         )
@@ -127,7 +127,3 @@ def _way(back: IntArray, start: int) -> IntArray:
     while back[way[-1]] >= 0:
         way.append(int(back[way[-1]]))
     return np.array(way, dtype=np.int64)
-
-
-def _millimetres(point: FloatArray) -> str:
-    return "[" + ", ".join(f"{1e3 * c:.0f}" for c in point) + "]"

@@ -11,7 +11,7 @@ from typing import Literal, TypedDict, Unpack
 from seatlook import io
 from seatlook.errors import InputError
 from seatlook.files import write_text
-from seatlook.flattening.cutting import cut_along
+from seatlook.flattening.cutting import cut_along, opened
 from seatlook.flattening.flatten import Flattened, flatten
 from seatlook.flattening.strain_map import write_strain_maps
 from seatlook.flattening.surface import DesignSurface
@@ -85,7 +85,7 @@ def read_design(
     """Read a design surface, and cut it along the lines of a file, if there is one."""
     form = DesignSurface(**io.read_surface(path, unit=unit, ungrouped="PANEL")._asdict())
     if seam_lines is None:
-        return form
+        return opened(form)
     lines = io.read_curves(seam_lines)
     try:
         return cut_along(form, lines)

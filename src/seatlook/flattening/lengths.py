@@ -9,9 +9,9 @@ from scipy.spatial import cKDTree
 
 from seatlook.errors import SeatlookError
 from seatlook.flattening.pattern import pair
-from seatlook.flattening.relax import HeldEdges, flatten_patch
-from seatlook.flattening.surface import Patch, Side
-from seatlook.mesh import segment_lengths
+from seatlook.flattening.relax import HeldEdges, Openings, flatten_patch
+from seatlook.flattening.surface import Patch, Side, darts
+from seatlook.mesh import arc_length, segment_lengths
 from seatlook.model import Fabric, FloatArray
 
 # [m] over which the stretch beside an eased sewing line fades out. A linear fade over a strip is
@@ -21,6 +21,9 @@ _EASE_PRECISION = 2e-5  # [m]
 _EASE_ROUNDS = 12
 _LENGTH_PRECISION = 2e-5  # [m] of a sewing line; both lines of a seam then agree to 4e-5
 _LENGTH_ROUNDS = 8
+# Share of its length by which a dart is open at least: so much is left between its sides where the
+# form asks for none, or for cloth that is let in.
+_OPENING = 0.02
 
 
 def agreed_ratios(
@@ -76,7 +79,10 @@ def relax_panel(
         step = (goal - lengths) / slope
         amount = amount + step
         growth = _growth(patch, eased, amount)
-        x = flatten_patch(patch.vertices, patch.faces, held, growth=growth, start=x, fabric=fabric)
+        apart = _openings(patch, own, x)
+        x = flatten_patch(
+            patch.vertices, patch.faces, held, openings=apart, growth=growth, start=x, fabric=fabric
+        )
         before, lengths = lengths, _lengths(patch, x, eased)
         slope = np.where(step == 0, slope, (lengths - before) / np.where(step == 0, 1.0, step))
     raise SeatlookError("it cannot be stretched to the ease of its sewing lines")
@@ -95,7 +101,8 @@ def _with_lengths(
     trace, what is missing is added to the lengths asked for (the method of multipliers).
     """
     held = _held(patch, own, ratio)
-    x = flatten_patch(patch.vertices, patch.faces, held, start=start, fabric=fabric)
+    form, apart = (patch.vertices, patch.faces), _openings(patch, own, start)
+    x = flatten_patch(*form, held, openings=apart, start=start, fabric=fabric)
     goal = held.length
     for _ in range(_LENGTH_ROUNDS):
         edge = x[held.vertices[:, 1]] - x[held.vertices[:, 0]]
@@ -104,8 +111,29 @@ def _with_lengths(
         if max((abs(part.sum()) for part in by_side), default=0.0) < _LENGTH_PRECISION:
             break
         held = HeldEdges(vertices=held.vertices, length=held.length + missing)
-        x = flatten_patch(patch.vertices, patch.faces, held, start=x, fabric=fabric)
+        apart = _openings(patch, own, x)
+        x = flatten_patch(*form, held, openings=apart, start=x, fabric=fabric)
     return x, held
+
+
+def _openings(patch: Patch, own: Sequence[Side], x: FloatArray) -> Openings | None:
+    """Return what keeps the sides of a panel's darts apart, None where it has none."""
+    parts = []
+    for a, b in darts(patch, own):
+        middle = (x[a] + x[b]) / 2
+        along = np.gradient(middle, axis=0)
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        way = arc_length(patch.vertices[a])
+        to_tip = way[-1] - way
+        if a[0] == b[0]:
+            to_tip = np.minimum(to_tip, way)
+        apart = a != b
+        parts.append((np.column_stack([a, b])[apart], along[apart], _OPENING * to_tip[apart]))
+    if not parts:
+        return None
+    pairs, along, least = (np.concatenate(column) for column in zip(*parts, strict=True))
+    across = np.column_stack([along[:, 1], -along[:, 0]])
+    return Openings(vertices=pairs, across=across, least=least)
 
 
 def _held(patch: Patch, own: Sequence[Side], ratio: Mapping[str, FloatArray]) -> HeldEdges:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
@@ -11,18 +11,22 @@ import shapely
 
 from seatlook import mesh
 from seatlook.errors import InputError, SeatlookError
-from seatlook.flattening.surface import FREE, Patch, Side
+from seatlook.flattening.surface import Patch, Side, darts
 from seatlook.model import Edge, FloatArray, IntArray, Notch, Panel, Pattern, Seam
 
 _NOTCH_DEPTH = 0.004
 _NOTCH_SPACING = 0.3
+_ROUNDING = 1e-6  # [m]
 _SHARP_TURN = np.radians(25.0)
 
 
-def cut_outline(outline: FloatArray, allowance: float) -> FloatArray:
+def cut_outline(
+    outline: FloatArray, allowance: float, *, darts: Sequence[FloatArray] = (), panel: str = ""
+) -> FloatArray:
     """Return the cutting line (k, 2) [m], ``allowance`` outside the sew line, corners mitred.
 
-    Mitres longer than twice the allowance are cut square, as in a cutting room.
+    Mitres longer than twice the allowance are cut square, as in a cutting room. Where allowances
+    meet inside a dart, its (k, 2) outline given, the cloth is left whole.
 
     Raises
     ------
@@ -36,17 +40,22 @@ def cut_outline(outline: FloatArray, allowance: float) -> FloatArray:
     >>> line.min(axis=0), line.max(axis=0)
     (array([-0.01, -0.01]), array([0.11, 0.11]))
     """
+    key = f"panel {panel}, allowance" if panel else "allowance"
     if allowance < 0:
-        raise InputError.single("allowance", got=allowance, expected="at least 0")
+        raise InputError.single(key, got=allowance, expected="at least 0")
     if allowance == 0:
         return outline.copy()
     grown = shapely.Polygon(outline).buffer(allowance, join_style="mitre", mitre_limit=2.0)
-    if grown.geom_type != "Polygon" or len(grown.interiors):
-        raise InputError.single(
-            "allowance",
-            got=f"{1e3 * allowance:g} mm",
-            expected="a cutting line that does not meet itself",
-        )
+    inside = shapely.unary_union([shapely.Polygon(dart) for dart in darts]).buffer(_ROUNDING)
+    for hole in grown.interiors:
+        if not inside.contains(hole):
+            x, y = 1e3 * shapely.get_coordinates(hole.centroid)[0]
+            raise InputError.single(
+                key,
+                got=f"{1e3 * allowance:g} mm",
+                expected="a cutting line that does not meet itself, as near "
+                f"[{x:.0f}, {y:.0f}] mm of the flat panel",
+            )
     ring = shapely.get_coordinates(shapely.geometry.polygon.orient(grown).exterior)
     return np.ascontiguousarray(ring[:-1])
 
@@ -92,7 +101,12 @@ def sewing_pattern(
                 name=patch.name,
                 outline=outline,
                 corners=_corners(outline, [side.start for side in own]),
-                cut_outline=cut_outline(outline, allowance),
+                cut_outline=cut_outline(
+                    outline,
+                    allowance,
+                    darts=[flat[patch.name][np.append(a, b[-2::-1])] for a, b in darts(patch, own)],
+                    panel=patch.name,
+                ),
                 grain=np.array([0.0, 1.0]),
                 notches=tuple(notches),
             )
@@ -117,22 +131,21 @@ def _check_outline(patch: Patch, outline: FloatArray) -> None:
 def pair(
     borders: tuple[Side, ...], seam_lines: Mapping[tuple[int, int], str] = MappingProxyType({})
 ) -> tuple[Seam, ...]:
-    """Pair the sides that run along the same vertices; the panel that comes first is side a.
+    """Pair the sides that are sewn to each other; the one that comes first is side a.
 
     A seam is called after the line that most of its edges lie on, the second one of a line
     ``LINE_2``; without a line after its sides.
     """
-    order = list(dict.fromkeys(side.panel for side in borders))
-    by_ends = {(s.panel, int(s.vertices[0]), int(s.vertices[-1])): s.name for s in borders}
     seams: list[Seam] = []
     again: dict[str, int] = {}
+    done: set[str] = set()
     for side in borders:
-        if side.neighbour != FREE and order.index(side.panel) < order.index(side.neighbour):
-            other = by_ends[side.neighbour, int(side.vertices[-1]), int(side.vertices[0])]
+        if side.partner is not None and side.name not in done:
+            done.add(side.partner)
             name = _line(side, seam_lines)
             again[name] = again.get(name, 0) + 1
             name += f"_{again[name]}" if again[name] > 1 else ""
-            seams.append(Seam(name=name, a=side.name, b=(other,)))
+            seams.append(Seam(name=name, a=side.name, b=(side.partner,)))
     return tuple(seams)
 
 

@@ -41,11 +41,27 @@ class HeldEdges:
     length: FloatArray
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Openings:
+    """Pairs of vertices (k, 2) on both sides of darts, which may not lie over each other.
+
+    Parameters
+    ----------
+    across : (k, 2)       unit vectors from the first side to the second
+    least : (k,) [m]      by which the second is to lie that way
+    """
+
+    vertices: IntArray
+    across: FloatArray
+    least: FloatArray
+
+
 def flatten_patch(
     vertices: FloatArray,
     faces: IntArray,
     held: HeldEdges | None = None,
     *,
+    openings: Openings | None = None,
     growth: FloatArray | None = None,
     start: FloatArray | None = None,
     fabric: Fabric | None = None,
@@ -63,6 +79,7 @@ def flatten_patch(
     ----------
     vertices : (n, 3) float64 [m]; faces : (m, 3) int64, a disk
     held : edges with a length of their own; None for none
+    openings : sides of darts that are kept apart; None for none
     growth : (m, 3, 3)   symmetric stretch that each face is to have in the plane; None for none
     start : (n, 2) [m]   first guess without a turned face; None takes ``unfolded_start``
     fabric : warp, weft and shear curves; compression counts as tension does
@@ -77,7 +94,8 @@ def flatten_patch(
     if growth is not None:
         gradient = grown(gradient, growth, face_axes(vertices, faces))
     x = unfolded_start(vertices, faces) if start is None else start
-    energy = _Energy(gradient, face_areas(vertices, faces), held, fabric, _chord(x))
+    area = face_areas(vertices, faces)
+    energy = _Energy(gradient, area, held, openings, fabric, _chord(x))
     value, residual, jacobian = energy.at(x)
     for _ in range(_MAX_STEPS):
         step = _step(residual, jacobian)
@@ -132,6 +150,7 @@ class _Energy:
     gradient: Gradient
     area: FloatArray
     held: HeldEdges
+    openings: Openings | None
     fabric: Fabric | None
     chord: _Chord
 
@@ -147,8 +166,14 @@ class _Energy:
             blocks.append(row)
         beyond, rows = _bounding_rows(x, self.gradient, root, fabric=self.fabric is not None)
         lengths, held = _held_rows(x, self.held, self.area)
-        r = np.concatenate([*residual, *beyond, lengths])
-        by_axis = sp.vstack([sp.hstack(pair) for pair in [*blocks, *rows, held]]).tocsc()
+        blocks += [*rows, held]
+        residual += [*beyond, lengths]
+        if self.openings is not None:
+            missing, row = _opening_rows(x, self.openings)
+            residual.append(missing)
+            blocks.append(row)
+        r = np.concatenate(residual)
+        by_axis = sp.vstack([sp.hstack(pair) for pair in blocks]).tocsc()
         order = np.arange(2 * len(x)).reshape(2, -1).T.ravel()
         return 0.5 * float(r @ r), r, by_axis[:, order]
 
@@ -220,6 +245,22 @@ def _held_rows(
     return root * ((span**2).sum(axis=1) - held.length**2) / 2, [
         sp.csr_array(
             (signs * np.repeat(root * span[:, k], 2), (rows, ends)), shape=(len(span), len(x))
+        )
+        for k in (0, 1)
+    ]
+
+
+def _opening_rows(x: FloatArray, openings: Openings) -> tuple[FloatArray, list[sp.csr_array]]:
+    """Residuals that are above 0 where the sides of a dart lie over each other."""
+    ends, across = openings.vertices, openings.across
+    open_by = ((x[ends[:, 1]] - x[ends[:, 0]]) * across).sum(axis=1)
+    weight = np.sqrt(_HOLD)
+    missing = np.maximum(openings.least - open_by, 0.0)
+    signs = weight * np.where(missing > 0, 1.0, 0.0)[:, None] * [1.0, -1.0]
+    rows = np.repeat(np.arange(len(ends)), 2)
+    return weight * missing, [
+        sp.csr_array(
+            ((signs * across[:, k, None]).ravel(), (rows, ends.ravel())), shape=(len(ends), len(x))
         )
         for k in (0, 1)
     ]

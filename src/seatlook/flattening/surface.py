@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from seatlook import mesh
-from seatlook.errors import InputError
+from seatlook.errors import InputError, Problem
 from seatlook.model import FloatArray, IntArray
 
 FREE = "free"  # stands for the neighbour where a panel is not sewn
+_Segment = tuple[int, int]  # outline and segment of it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,7 +27,8 @@ class DesignSurface:
     faces : (m, 3) int64           normals outward, the visible side
     panel : (m,) int64             index into ``panel_names``
     panel_names : names of the panels; two panels share the vertices of the seam between them
-    seam_lines : edge, smaller vertex first -> name of the line it was cut along, if any
+    seam_lines : edge, smaller vertex first -> name of the line it was cut along, if any; a line
+        inside a panel cuts that, and both sides are sewn: a dart, or the closing seam of a ring
     """
 
     vertices: FloatArray
@@ -46,24 +50,98 @@ class DesignSurface:
             )
 
     def patches(self) -> tuple[Patch, ...]:
-        """Return the panels' patches in the order of ``panel_names``."""
-        return tuple(self._patch(i) for i in range(len(self.panel_names)))
+        """Return the panels' patches in the order of ``panel_names``.
 
-    def _patch(self, index: int) -> Patch:
-        name = self.panel_names[index]
-        used, faces = np.unique(self.faces[self.panel == index], return_inverse=True)
-        faces = np.asarray(faces.reshape(-1, 3), dtype=np.int64)
-        loops = mesh.boundary_loops(faces)
-        euler = len(used) - len(mesh.edges(faces)) + len(faces)
-        if len(loops) != 1 or euler != 1:
-            raise InputError.single(
-                f"panel {name}",
-                got=f"{len(loops)} boundary curves, Euler number {euler}",
-                expected="one connected piece without holes",
-            )
+        Raises
+        ------
+        InputError
+            Panels that are no disk once they are cut along the seam lines in them.
+        """
+        patches, problems = [], []
+        for index in range(len(self.panel_names)):
+            patch = self.piece(index)
+            problem = self._no_disk(patch)
+            if problem is None:
+                patches.append(patch)
+            else:
+                problems.append(problem)
+        if problems:
+            raise InputError(problems)
+        return tuple(patches)
+
+    def piece(self, index: int) -> Patch:
+        """Cut a panel out, of whatever shape, and along the lines in it, whose vertices double."""
+        of_surface = self.faces[self.panel == index]
+        pairs = mesh.inner_sides(of_surface)
+        half = np.sort(of_surface[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)[pairs[:, 0]], axis=1)
+        cut = np.array([(a, b) in self.seam_lines for a, b in half.tolist()], dtype=bool)
+        source, faces = _fans(of_surface, pairs[~cut])
         return Patch(
-            name=name, vertices=self.vertices[used], faces=faces, source=used, boundary=loops[0]
+            name=self.panel_names[index],
+            vertices=self.vertices[source],
+            faces=faces,
+            source=source,
+            boundary=(mesh.boundary_loops(faces) or [np.zeros(0, dtype=np.int64)])[0],
         )
+
+    def _no_disk(self, patch: Patch) -> Problem | None:
+        """Return what keeps a patch from being one piece with one outline."""
+        loops = mesh.boundary_loops(patch.faces)
+        euler = len(patch.vertices) - len(mesh.edges(patch.faces)) + len(patch.faces)
+        if len(loops) == 1 and euler == 1:
+            return None
+        for loop in loops:
+            if len(loops) > 1 and patch.is_slit(loop):
+                ring = patch.source[loop]
+                ends = np.sort(np.column_stack([ring, np.roll(ring, -1)]), axis=1)
+                names = sorted({self.seam_lines[a, b] for a, b in ends.tolist()})
+                return Problem(
+                    key=f"panel {patch.name}",
+                    got=f"{' and '.join(names)}, inside it near {_place(patch.vertices[loop])}",
+                    expected="a dart that starts at the border or at another line",
+                )
+        got = f"{len(loops)} boundary curves, Euler number {euler}"
+        if not loops:
+            got = f"a closed surface round {_place(patch.vertices)}"
+        elif len(loops) > 1:
+            got += f", near {' and '.join(_place(patch.vertices[loop[:1]]) for loop in loops)}"
+        return Problem(
+            key=f"panel {patch.name}",
+            got=got,
+            expected="one connected piece without holes",
+            hint="cut it along a line that is closed" if not loops else
+            "cut it along a line from one of its borders to another",
+        )  # fmt: skip
+
+
+def _fans(faces: IntArray, pairs: IntArray) -> tuple[IntArray, IntArray]:
+    """Give each vertex once to every fan of faces round it that hang together by their sides.
+
+    Returns the vertex (n,) that each one was, and the faces (m, 3) in the new numbers.
+    """
+    face, k = np.divmod(pairs, 3)
+    first, second = 3 * face + k, 3 * face + (k + 1) % 3
+    # The two sides of an edge run against each other.
+    a = np.concatenate([first[:, 0], second[:, 0]])
+    b = np.concatenate([second[:, 1], first[:, 1]])
+    graph = sp.coo_array((np.ones(len(a)), (a, b)), shape=(faces.size, faces.size))
+    fan = connected_components(graph, directed=False)[1]
+    corner = faces.ravel()
+    source = np.empty(fan.max(initial=-1) + 1, dtype=np.int64)
+    source[fan] = corner
+    order = np.argsort(source, kind="stable")
+    number = np.empty_like(order)
+    number[order] = np.arange(len(order))
+    return source[order], np.asarray(number[fan].reshape(-1, 3), dtype=np.int64)
+
+
+def millimetres(point: FloatArray) -> str:
+    """Return a point (3,) [m] as it stands in messages."""
+    return "[" + ", ".join(f"{1e3 * c:.0f}" for c in point) + "]"
+
+
+def _place(points: FloatArray) -> str:
+    return f"{millimetres(points.mean(axis=0))} mm"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +151,7 @@ class Patch:
     Parameters
     ----------
     vertices : (n, 3) [m]; faces : (m, 3) into ``vertices``
-    source : (n,) int64     the vertices' indices in the whole surface
+    source : (n,) int64     the vertices' indices in the whole surface; twice along a dart
     boundary : (b,) int64   the outline, counter-clockwise seen from outside
     """
 
@@ -83,6 +161,12 @@ class Patch:
     source: IntArray
     boundary: IntArray
 
+    def is_slit(self, loop: IntArray) -> bool:
+        """Whether a boundary curve is a line inside the panel, run along on both of its sides."""
+        ring = self.source[loop]
+        ends = np.sort(np.column_stack([ring, np.roll(ring, -1)]), axis=1)
+        return 2 * len(np.unique(ends, axis=0)) == len(ends)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Side:
@@ -90,7 +174,8 @@ class Side:
 
     Parameters
     ----------
-    panel, neighbour : names; the neighbour of a free edge is FREE
+    panel, neighbour : names; the neighbour of a free edge is FREE, that of a dart its own panel
+    partner : name of the side it is sewn to; None for a free edge
     start, count : first position in ``Patch.boundary`` and number of segments
     vertices : (count + 1,) int64   indices in the whole surface, in outline order
     """
@@ -98,6 +183,7 @@ class Side:
     name: str
     panel: str
     neighbour: str
+    partner: str | None
     start: int
     count: int
     vertices: IntArray
@@ -109,41 +195,91 @@ class Side:
 
 
 def sides(patches: tuple[Patch, ...]) -> tuple[Side, ...]:
-    """Split every patch's outline where three panels, or two and the outside, meet.
+    """Split every patch's outline where its partner changes, and at the tips of darts.
 
     A side is called ``PANEL.NEIGHBOUR``; when there are several, ``PANEL.NEIGHBOUR_2`` and so on
     in outline order. An outline with one neighbour all round is one side, closed.
     """
-    owner: dict[tuple[int, int], str] = {}
-    for patch in patches:
-        ring = patch.source[patch.boundary]
-        owner |= dict.fromkeys(
-            zip(ring.tolist(), np.roll(ring, -1).tolist(), strict=True), patch.name
-        )
-    return tuple(side for patch in patches for side in _sides_of(patch, owner))
-
-
-def _sides_of(patch: Patch, owner: dict[tuple[int, int], str]) -> list[Side]:
-    ring = patch.source[patch.boundary].tolist()
-    b = len(ring)
-    across = [owner.get((ring[(i + 1) % b], ring[i]), FREE) for i in range(b)]
-    starts = [i for i in range(b) if across[i] != across[i - 1]]
-    if not starts:  # closed: both panels of a seam all round start at the same vertex
-        starts = [int(np.argmin(ring))]
-    result: list[Side] = []
-    for k, start in enumerate(starts):
-        count = (starts[(k + 1) % len(starts)] - start) % b or b
-        again = sum(side.neighbour == across[start] for side in result)
-        suffix = f"_{again + 1}" if again else ""
-        at = [(start + i) % b for i in range(count + 1)]
+    rings = [patch.source[patch.boundary].tolist() for patch in patches]
+    across = _across(rings)
+    stretches = [
+        (p, start, (stop - start) % len(rings[p]) or len(rings[p]))
+        for p, starts in enumerate(_starts(rings, across))
+        for start, stop in zip(starts, [*starts[1:], starts[0]], strict=True)
+    ]
+    names: dict[tuple[int, int], str] = {}
+    for p, start, _ in stretches:
+        other = across[p][start]
+        stem = f"{patches[p].name}.{FREE if other is None else patches[other[0]].name}"
+        again = sum(name == stem or name.startswith(f"{stem}_") for name in names.values())
+        names[p, start] = stem + (f"_{again + 1}" if again else "")
+    result = []
+    for p, start, count in stretches:
+        ring, other = rings[p], across[p][start]
+        last = across[p][(start + count - 1) % len(ring)]
+        at = [(start + i) % len(ring) for i in range(count + 1)]
         result.append(
             Side(
-                name=f"{patch.name}.{across[start]}{suffix}",
-                panel=patch.name,
-                neighbour=across[start],
+                name=names[p, start],
+                panel=patches[p].name,
+                neighbour=FREE if other is None else patches[other[0]].name,
+                partner=None if last is None else names[last],
                 start=start,
                 count=count,
                 vertices=np.array(ring, dtype=np.int64)[at],
             )
         )
+    return tuple(result)
+
+
+def darts(patch: Patch, own: Sequence[Side]) -> list[tuple[IntArray, IntArray]]:
+    """Return the vertices of both sides of each dart of a patch, from the mouth to the tip.
+
+    A line that lies inside the panel with both ends, in an else closed surface, has two tips.
+    """
+    result = []
+    for side in own:
+        other = next((s for s in own if s.name == side.partner), None)
+        if other is not None:
+            a, b = side.indices(patch), other.indices(patch)[::-1]
+            if a[-1] == b[-1] and (a[0] != b[0] or side.name < other.name):
+                result.append((a, b))
+    return result
+
+
+def _across(rings: list[list[int]]) -> list[list[_Segment | None]]:
+    """Return for each segment of each outline the segment that it is sewn to."""
+    segment = {
+        (ring[i], ring[(i + 1) % len(ring)]): (p, i)
+        for p, ring in enumerate(rings)
+        for i in range(len(ring))
+    }
+    return [
+        [segment.get((ring[(i + 1) % len(ring)], ring[i])) for i in range(len(ring))]
+        for ring in rings
+    ]
+
+
+def _starts(rings: list[list[int]], across: list[list[_Segment | None]]) -> list[list[int]]:
+    """Return where the sides of each outline start."""
+    result: list[list[int]] = []
+    for p, ring in enumerate(rings):
+        starts = []
+        for i in range(len(ring)):
+            before, here = across[p][i - 1], across[p][i]
+            if before is None or here is None:
+                goes_on = before is here
+            else:
+                q, j = before
+                goes_on = here == (q, (j - 1) % len(rings[q])) and before != (p, i)
+            if not goes_on:
+                starts.append(i)
+        if not starts:  # one neighbour all round: both start at the same vertex
+            other = across[p][0]
+            if other is not None and other[0] < p:
+                twin = across[other[0]][result[other[0]][0] - 1]
+                starts = [twin[1]] if twin is not None else []
+            else:
+                starts = [int(np.argmin(ring))]
+        result.append(starts)
     return result

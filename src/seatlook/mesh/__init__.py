@@ -65,6 +65,9 @@ if TYPE_CHECKING:
         hexagonal_bias as hexagonal_bias,
     )
     from seatlook.mesh.surface import (
+        inner_sides as inner_sides,
+    )
+    from seatlook.mesh.surface import (
         vertex_normals as vertex_normals,
     )
 
@@ -83,6 +86,7 @@ _PUBLIC: dict[str, str] = {
     "face_normals": "seatlook.mesh.surface",
     "face_vectors": "seatlook.mesh.surface",
     "hexagonal_bias": "seatlook.mesh.surface",
+    "inner_sides": "seatlook.mesh.surface",
     "intersecting_pairs": "seatlook.mesh.intersection",
     "length": "seatlook.mesh.polyline",
     "nearest_place": "seatlook.mesh.polyline",
@@ -106,6 +110,7 @@ __all__ = [
     "face_normals",
     "face_vectors",
     "hexagonal_bias",
+    "inner_sides",
     "intersecting_pairs",
     "length",
     "nearest_place",

@@ -14,6 +14,8 @@ from seatlook.mesh.surface import boundary_sides
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+CLEAR = 0.010  # [m] that the tip of a dart stays away: less is an end that was drawn too short
+
 
 def lay_on(
     vertices: FloatArray,
@@ -25,7 +27,8 @@ def lay_on(
     """Lay lines onto a surface and join their ends to the border or to each other.
 
     An end within ``tolerance`` of the border moves there; one within it of another line's end, or
-    of another line, moves there, and that line gets a point at the same place.
+    of another line, moves there, and that line gets a point at the same place. An end ``CLEAR``
+    of them stays where it is: the tip of a dart.
 
     Parameters
     ----------
@@ -36,7 +39,8 @@ def lay_on(
     Raises
     ------
     InputError
-        A point lies farther than ``tolerance`` from the surface, or a line ends nowhere.
+        A point lies farther than ``tolerance`` from the surface, or a line ends a little before
+        the border or another line.
     """
     laid, problems = {}, []
     within = f"within {1e3 * tolerance:g} mm of"
@@ -54,9 +58,10 @@ def lay_on(
     border = np.stack([vertices[faces[side, k]], vertices[faces[side, (k + 1) % 3]]], axis=1)
     for name, at, from_border in _open_ends(laid, border, tolerance):
         gap = min(_join(laid, name, at, tolerance), from_border)
-        if gap > tolerance:
+        if tolerance < gap < CLEAR:
             i = at % len(lines[name])
-            expected = f"an end {within} the border or another line"
+            expected = f"an end {within} the border or another line, or as the tip of a dart "
+            expected += f"{1e3 * CLEAR:g} mm clear of them"
             problems.append(_problem(name, i, f"an end {1e3 * gap:.1f} mm away", expected))
     if problems:
         raise InputError(problems)

@@ -37,6 +37,21 @@ def boundary_sides(faces: IntArray) -> IntArray:
     return np.flatnonzero(single[place] == key) if len(single) else np.zeros(0, dtype=np.int64)
 
 
+def inner_sides(faces: IntArray) -> IntArray:
+    """Return pairs (k, 2) of sides along one edge, numbered as in ``boundary_sides``.
+
+    Examples
+    --------
+    >>> inner_sides(np.array([[0, 1, 2], [0, 2, 3]])).tolist()
+    [[2, 3]]
+    """
+    half = np.sort(_half_edges(faces), axis=1)
+    key = half @ [int(faces.max(initial=-1)) + 1, 1]
+    order = np.argsort(key, kind="stable")
+    at = np.flatnonzero(key[order[1:]] == key[order[:-1]])
+    return np.column_stack([order[at], order[at + 1]])
+
+
 def boundary_loops(faces: IntArray) -> list[IntArray]:
     """Return the closed boundary curves as vertex indices, each with the surface on its left.
 
