@@ -5,6 +5,7 @@ Run it with: python gallery/pictures.py [FOLDER]
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -25,7 +26,10 @@ VIEWS = {
 
 
 def main(folder: Path = Path("out"), *, width: int = 800) -> None:
-    """Evaluate both seats below ``folder`` and keep their pictures at ``width`` pixels."""
+    """Evaluate both seats below ``folder`` and keep their pictures at ``width`` pixels.
+
+    The drawing of the start is kept as it is: its numbers are to be read.
+    """
     for seat, options in SEATS.items():
         out = folder / seat
         code = run(["demo", "--out", str(out), "--resume", "--no-score", *options])
@@ -37,6 +41,9 @@ def main(folder: Path = Path("out"), *, width: int = 800) -> None:
                 picture.resize(size, Image.Resampling.LANCZOS).save(
                     PICTURES / f"{seat}-{view}.png", optimize=True
                 )
+    run(["check", str(folder / "fits" / "scene.toml")])
+    drawing = folder / "fits" / "check" / "assembly.png"
+    shutil.copyfile(drawing, PICTURES / "assembly.png")
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from seatlook.errors import InputError
 from seatlook.model import Camera, Rig, Scene
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES
+from seatlook.report.assembly_picture import draw_assembly
 from seatlook.report.comparison_page import write_comparison
 from seatlook.report.evaluation_page import write_report
 from seatlook.report.page.types import Check, ScoreSection
@@ -129,6 +130,27 @@ class Seat(Case):
             section = visibility(evaluation, progress) if score or limited else None
             page = write_report(evaluation, score=section, single_file=single_file)
         return Outcome(page=page, evaluation=evaluation, score=section)
+
+    def draw_assembly(self, path: Path | str) -> Path:
+        """Draw the cover as it starts, before anything is solved, into a PNG file.
+
+        It shows panels over foam, numbered seams with their gaps, hooks and frames, and marks
+        what ``check`` refuses.
+
+        Raises
+        ------
+        InputError
+            The scene cannot be meshed, or the file cannot be written.
+        NoOffscreenContext, RenderError
+        """
+        file = Path(path)
+        try:
+            draw_assembly(self.scene, self.cover, self.contradictions, file)
+        except OSError as error:
+            raise InputError.single(
+                str(file), got=error.strerror or str(error), expected="a folder that can be written"
+            ) from None
+        return file
 
     def precision(self, tolerance: float, *, progress: Progress = silent) -> Precise:
         """Solve no finer than a tolerance of the zone means asks for, and measure the error.

@@ -8,7 +8,7 @@ import pytest
 
 from seatlook import io
 from seatlook.assembly import assemble
-from seatlook.assembly.contradictions import refuse_contradictions
+from seatlook.assembly.contradictions import contradictions, refuse
 from seatlook.chain.case import Case
 from seatlook.chain.start import init
 from seatlook.errors import InputError
@@ -75,7 +75,7 @@ def moved(curve, change):
 
 def test_the_demo_and_two_panels_contradict_nothing(demo):
     Case(io.load_scene(demo / "scene.toml")).check()
-    refuse_contradictions(two_panels(), assemble(two_panels()))
+    assert contradictions(two_panels(), assemble(two_panels())) == ()
 
 
 def test_hooks_to_the_wire_of_the_other_side(edited):
@@ -175,7 +175,7 @@ def test_a_pattern_out_of_scale(demo, factor, ratio):
     cover = assemble(scene)
     cover = dataclasses.replace(cover, rest=factor * cover.rest)
     with pytest.raises(InputError) as caught:
-        refuse_contradictions(scene, cover)
+        refuse(contradictions(scene, cover))
     (problem,) = caught.value.problems
     assert problem.key == "pattern.file"
     assert problem.line == line_of(demo / "scene.toml", "file = ")

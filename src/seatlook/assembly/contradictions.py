@@ -5,7 +5,8 @@ Each has a name, by which ``[check] allow`` of the scene lets it pass.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
@@ -32,27 +33,49 @@ _ALIKE = 0.1  # difference in length of seams that could be taken for each other
 _SHARES = np.linspace(0.0, 1.0, 11)  # of a seam's length, where gaps are measured
 
 
-def refuse_contradictions(scene: Scene, cover: Cover) -> None:
-    """Refuse what a solve could not mend, all of it at once, with file and line.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contradiction:
+    """What cannot be: its name out of ``ALLOWED``, what is said of it, and where it is.
+
+    Parameters
+    ----------
+    places : (k, 3) float64 [m]   on the cover as it starts, the foam or a curve; may be none
+    """
+
+    name: str
+    problem: Problem
+    places: FloatArray
+
+
+def contradictions(scene: Scene, cover: Cover) -> tuple[Contradiction, ...]:
+    """Find what a solve could not mend and the scene does not allow.
+
+    These are ties that send one point to two places, a hook far from its wire, a curve through the
+    foam, a pattern out of scale, panels that start inside the foam, seams twisted or exchanged.
+    """
+    lines = _Lines(scene)
+    found = list(_seams(lines, scene, cover))
+    found += _shared_points(lines, cover)
+    if cover.foam is not None:
+        field = distance_field(cover.foam.vertices, cover.foam.faces)
+        found += _scale(lines, cover, cover.foam)
+        found += _starts(lines, cover, field)
+        found += _curves(lines, scene, cover, field)
+        found += _hooks(lines, scene, cover)
+    return tuple(one for one in found if one.name not in scene.allowed)
+
+
+def refuse(found: Iterable[Contradiction]) -> None:
+    """Refuse contradictions, all of them at once.
 
     Raises
     ------
     InputError
-        Ties that send one point to two places, a hook far from its wire, a curve through the foam,
-        a pattern out of scale, panels that start inside the foam, seams twisted or exchanged.
+        There is one; each with file, line and both places.
     """
-    lines = _Lines(scene)
-    problems = list(_seams(lines, scene, cover))
-    problems += _shared_points(lines, cover)
-    if cover.foam is not None:
-        field = distance_field(cover.foam.vertices, cover.foam.faces)
-        problems += _scale(lines, cover, cover.foam)
-        problems += _starts(lines, cover, field)
-        problems += _curves(lines, scene, cover, field)
-        problems += _hooks(lines, scene, cover)
-    refused = [problem for name, problem in problems if name not in scene.allowed]
-    if refused:
-        raise InputError(refused)
+    problems = [one.problem for one in found]
+    if problems:
+        raise InputError(problems)
 
 
 class _Lines:
@@ -72,17 +95,28 @@ class _Lines:
         number: str | int = names.index(anchor.name) if anchor.name in names else anchor.name
         return (anchor.kind, number)
 
-    def problem(self, name: str, key: Key, got: str, expected: str) -> tuple[str, Problem]:
-        """A contradiction in the scene file, and its name."""
-        return name, _problem(self._scene, name, key, got, expected)
+    def problem(
+        self, name: str, key: Key, places: list[FloatArray], got: str, expected: str
+    ) -> Contradiction:
+        """A contradiction in the scene file."""
+        return _contradiction(self._scene, name, key, places, got, expected)
 
-    def seam(self, name: str, number: int, got: str, expected: str) -> tuple[str, Problem]:
-        """A contradiction of a seam in the seams file, and its name."""
-        return name, _problem(self._seams, name, ("seam", number), got, expected)
+    def seam(
+        self, name: str, number: int, places: list[FloatArray], got: str, expected: str
+    ) -> Contradiction:
+        """A contradiction of a seam in the seams file."""
+        return _contradiction(self._seams, name, ("seam", number), places, got, expected)
 
 
-def _problem(document: Document | None, name: str, key: Key, got: str, expected: str) -> Problem:
-    return Problem(
+def _contradiction(
+    document: Document | None,
+    name: str,
+    key: Key,
+    places: list[FloatArray],
+    got: str,
+    expected: str,
+) -> Contradiction:
+    problem = Problem(
         key=spelled(key),
         got=got,
         expected=expected,
@@ -90,9 +124,12 @@ def _problem(document: Document | None, name: str, key: Key, got: str, expected:
         line=None if document is None else document.line(key),
         hint=f'if it is meant: [check] allow = ["{name}"] in the scene',
     )
+    return Contradiction(
+        name=name, problem=problem, places=np.array(places, dtype=np.float64).reshape(-1, 3)
+    )
 
 
-def _seams(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[tuple[str, Problem]]:
+def _seams(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[Contradiction]:
     """Seams whose ties cross, and pairs that would be shorter with each other's partners."""
     sides = [(_at_shares(s, s.a, cover), _at_shares(s, s.b, cover)) for s in cover.stitchings]
     number = {seam.name: k for k, seam in enumerate(scene.pattern.seams)}
@@ -103,6 +140,7 @@ def _seams(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[tuple[str, Pro
             yield lines.seam(
                 "twisted seam",
                 number[seam.name],
+                [a[0], b[0]],
                 f"{seam.name!r}, whose ties cross: {1e3 * gap:.0f} mm from side to side, and "
                 f"{1e3 * turned:.0f} mm with one side turned round ({_place(a[0])} is sewn to "
                 f"{_place(b[0])})",
@@ -119,6 +157,7 @@ def _seams(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[tuple[str, Pro
             yield lines.seam(
                 "exchanged seams",
                 number[one],
+                [sides[i][0][5], sides[j][0][5]],
                 f"{one!r} and {two!r}, {1e3 * gaps[i]:.0f} and {1e3 * gaps[j]:.0f} mm from side to "
                 f"side at {_place(sides[i][0][5])} and {_place(sides[j][0][5])}; with each other's "
                 f"partners {1e3 * other / 2:.0f} mm",
@@ -126,7 +165,7 @@ def _seams(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[tuple[str, Pro
             )
 
 
-def _shared_points(lines: _Lines, cover: Cover) -> Iterator[tuple[str, Problem]]:
+def _shared_points(lines: _Lines, cover: Cover) -> Iterator[Contradiction]:
     """Points of the cover, sewn or the same, that two ties send to different places."""
     point = _joined(cover)
     ties: dict[int, list[tuple[Anchor, FloatArray]]] = {}
@@ -144,25 +183,27 @@ def _shared_points(lines: _Lines, cover: Cover) -> Iterator[tuple[str, Problem]]
             yield lines.problem(
                 "ties apart",
                 lines.tie(two),
+                [here, there],
                 f"{two.name!r}, which pulls a point to {_place(there)} that {one.kind} "
                 f"{one.name!r} pulls to {_place(here)}, {1e3 * apart:.1f} mm away",
                 f"one place for a shared point, to {1e3 * TIES_APART:g} mm",
             )
 
 
-def _scale(lines: _Lines, cover: Cover, foam: Foam) -> Iterator[tuple[str, Problem]]:
+def _scale(lines: _Lines, cover: Cover, foam: Foam) -> Iterator[Contradiction]:
     """A pattern that is far too large or small for the foam."""
     ratio = float(cover.rest_area.sum() / face_areas(foam.vertices, foam.faces).sum())
     if not SMALLEST <= ratio <= LARGEST:
         yield lines.problem(
             "scale",
             ("pattern", "file"),
+            [],
             f"panels of {1e4 * cover.rest_area.sum():.4g} cm2, {ratio:.3g} times the foam's area",
             f"{SMALLEST:g} to {LARGEST:g} times: is one of them in another unit?",
         )
 
 
-def _starts(lines: _Lines, cover: Cover, field: DistanceField) -> Iterator[tuple[str, Problem]]:
+def _starts(lines: _Lines, cover: Cover, field: DistanceField) -> Iterator[Contradiction]:
     """Panels that start inside the foam."""
     depth = -field.at(cover.positions)[0][cover.faces].mean(axis=1)
     for number, name in enumerate(cover.panel_names):
@@ -174,6 +215,7 @@ def _starts(lines: _Lines, cover: Cover, field: DistanceField) -> Iterator[tuple
             yield lines.problem(
                 "start inside",
                 ("placement", name),
+                [place],
                 f"{100 * share:.0f} % of the panel more than {1e3 * DEEPEST_START:g} mm inside the "
                 f"foam, {1e3 * depth[own].max():.0f} mm at {_place(place)}",
                 f"at most {100 * INSIDE:g} %",
@@ -182,7 +224,7 @@ def _starts(lines: _Lines, cover: Cover, field: DistanceField) -> Iterator[tuple
 
 def _curves(
     lines: _Lines, scene: Scene, cover: Cover, field: DistanceField
-) -> Iterator[tuple[str, Problem]]:
+) -> Iterator[Contradiction]:
     """Frame curves that run through the foam; wires are looked at when the scene is read."""
     curve = {frame.name: frame.curve for frame in scene.frames}
     for anchor in cover.anchors:
@@ -191,13 +233,14 @@ def _curves(
             yield lines.problem(
                 "curve inside",
                 (*lines.tie(anchor), "curve"),
+                [anchor.target[np.argmax(depth)]],
                 f"{curve[anchor.name]!r}, {1e3 * depth.max():.0f} mm inside the foam at "
                 f"{_place(anchor.target[np.argmax(depth)])}",
                 f"a curve outside, or at most {1e3 * DEEPEST_CURVE:g} mm inside",
             )
 
 
-def _hooks(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[tuple[str, Problem]]:
+def _hooks(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[Contradiction]:
     """Hooked lines that start far from their wire, or nearer to another one."""
     wires = {hook.name: hook.wire for hook in scene.hooks}
     targets = {a.name: a.target for a in cover.anchors if a.kind == "hook"}
@@ -219,6 +262,7 @@ def _hooks(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[tuple[str, Pro
             yield lines.problem(
                 "hook far",
                 (*lines.tie(anchor), "wire"),
+                [start[middle], anchor.target[middle]],
                 f"{wires[anchor.name]!r}, {1e3 * way:.0f} mm from the line: "
                 f"{_place(start[middle])} goes to {_place(anchor.target[middle])}{hint}",
                 f"a wire at most {1e3 * FARTHEST_WIRE:g} mm away, and none much nearer",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from seatlook import io, pbr
 from seatlook.assembly import assemble
-from seatlook.assembly.contradictions import refuse_contradictions
+from seatlook.assembly.contradictions import Contradiction, contradictions, refuse
 from seatlook.chain.assess import Assessment, assess, limited, zones_with_faces
 from seatlook.chain.choose import Look, camera_of, look_of, narrowed, rig_of
 from seatlook.chain.draw import map_ends
@@ -185,8 +185,13 @@ class Case:
         zones = zones_with_faces(cover.zone, cover.zone_names)
         for limit in scene.limits:
             limited(limit, scene, zones)
-        refuse_contradictions(scene, cover)
+        refuse(self.contradictions)
         return cover
+
+    @cached_property
+    def contradictions(self) -> tuple[Contradiction, ...]:
+        """What a solve could not mend, with places, see ``assembly.contradictions``."""
+        return contradictions(self.scene, self.cover)
 
     def look(self, texture: Look) -> Appearance | None:
         """Appearance of a texture of the scene, of a supplied material or of an object."""

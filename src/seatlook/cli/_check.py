@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from seatlook.cli._options import Changes, ElementSize, SceneFile, Seed, seat_of
-from seatlook.cli._output import Json, note, table
+from seatlook.cli._output import Json, note, say, table
+from seatlook.errors import InputError, RenderError
 
 if TYPE_CHECKING:
     from seatlook.assembly.ease import SeamEase
+    from seatlook.assembly.start_lines import StartLine
+    from seatlook.seat import Seat
 
 
 def check(
@@ -22,16 +26,25 @@ def check(
 ) -> None:
     """Read a scene with all its files, mesh it, and say what would be solved; solve nothing.
 
+    Draws the cover as it starts into check/assembly.png beside the scene: panels over foam, seams
+    by number with their gaps, hooks and frames, and whatever is refused.
+
     Example: seatlook check seat.toml
     """
     from seatlook.assembly.ease import seam_ease
+    from seatlook.assembly.start_lines import start_lines
     from seatlook.results.resolution import resolutions
 
     seat = seat_of(scene, seed, element_size_mm, changes)
+    drawing = _drawing(seat, scene.parent / "check" / "assembly.png")
     cover, pattern = seat.check(), seat.scene.pattern
     finest = min(resolutions(cover), key=lambda mesh: mesh.wavelength)
+    lines = start_lines(seat.scene, cover)
+    sewn = {line.name: line for line in lines if line.kind == "seam"}
     eases = [seam_ease(pattern, seam) for seam in pattern.seams]
-    seams = [_seam_row(ease) for ease in sorted(eases, key=lambda ease: -abs(ease.share))]
+    eases.sort(key=lambda ease: -abs(ease.share))
+    seams = [_seam_row(ease, sewn[ease.name]) for ease in eases]
+    held = [_line_row(line) for line in lines if line.kind != "seam"]
     table(
         ("what", "value"),
         [
@@ -44,13 +57,27 @@ def check(
             ("element_size_mm", 1e3 * cover.element_size),
             ("wavelength_mm", 1e3 * finest.wavelength),
             ("wavelength_over_element_size", finest.per_wave),
-            *([("ease", seams)] if json else ()),
+            ("drawing", None if drawing is None else str(drawing)),
+            *([("ease", seams), ("held", held)] if json else ()),
         ],
         json=json,
     )
-    if seams and not json:
-        table(tuple(seams[0]), [tuple(map(_short, row.values())) for row in seams], json=False)
+    for rows in (seams, held):
+        if rows and not json:
+            table(tuple(rows[0]), [tuple(map(_short, row.values())) for row in rows], json=False)
     note(f"nothing wrong; to solve and draw it: seatlook evaluate {scene} --out FOLDER")
+
+
+def _drawing(seat: Seat, path: Path) -> Path | None:
+    """Draw the cover as it starts and say where; nothing else depends on it."""
+    _ = seat.cover  # what cannot be meshed is the scene's fault, not the drawing's
+    try:
+        seat.draw_assembly(path)
+    except (InputError, RenderError) as error:
+        say(f"not drawn: {str(error).splitlines()[0]}")
+        return None
+    note(f"drawing of the start: {path}")
+    return path
 
 
 def _short(value: Any) -> Any:
@@ -58,10 +85,12 @@ def _short(value: Any) -> Any:
     return f"{round(value, 2) + 0.0:.2f}" if isinstance(value, float) else value
 
 
-def _seam_row(ease: SeamEase) -> dict[str, Any]:
+def _seam_row(ease: SeamEase, line: StartLine) -> dict[str, Any]:
     """Figures of one seam; "matched" is whether both sides have as many notches."""
     return {
+        "number": line.number,
         "seam": ease.name,
+        "gap_mm": 1e3 * line.gap,
         "length_a_mm": 1e3 * ease.length_a,
         "length_b_mm": 1e3 * ease.length_b,
         "ease_mm": 1e3 * ease.ease,
@@ -70,4 +99,16 @@ def _seam_row(ease: SeamEase) -> dict[str, Any]:
         "notches_a": len(ease.notches_a),
         "notches_b": len(ease.notches_b),
         "matched": ease.matched,
+    }
+
+
+def _line_row(line: StartLine) -> dict[str, Any]:
+    """Figures of a hook or frame as it starts."""
+    return {
+        "number": line.number,
+        "kind": line.kind,
+        "name": line.name,
+        "pulled_to": line.target,
+        "gap_mm": 1e3 * line.gap,
+        "largest_gap_mm": 1e3 * float(line.gaps.max()),
     }

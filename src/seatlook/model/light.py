@@ -252,16 +252,21 @@ class Camera:
         >>> side.pixel(np.zeros(3))
         (640.0, 360.0)
         """
+        ((x, y),), _ = self.pixels(np.asarray(point)[None])
+        return float(x), float(y)
+
+    def pixels(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Where points (k, 3) [m] in front of the camera are seen (k, 2), and how deep (k,) [m]."""
         ahead = self.target - self.position
         ahead = ahead / np.linalg.norm(ahead)
         right = np.cross(ahead, self.up)
         right = right / np.linalg.norm(right)
-        away = point - self.position
+        away = points - self.position
         focal = self.size[1] / 2 / np.tan(np.radians(self.vertical_fov_deg) / 2)
-        depth = float(away @ ahead)
-        x = float(away @ right) / depth
-        y = float(away @ np.cross(right, ahead)) / depth
-        return float(self.size[0] / 2 + focal * x), float(self.size[1] / 2 - focal * y)
+        depth = away @ ahead
+        x = self.size[0] / 2 + focal * (away @ right) / depth
+        y = self.size[1] / 2 - focal * (away @ np.cross(right, ahead)) / depth
+        return np.column_stack([x, y]), np.asarray(depth)
 
 
 def named_view(
