@@ -27,13 +27,23 @@ END
     exit 3
 fi
 
+# OSMesa is the smaller one; Mesa has none since 25.1, nor has Debian from there on.
+wanted() {
+    # Not grep -q: it would end apt-cache by a signal.
+    if LC_ALL=C apt-cache "$@" policy libosmesa6 | grep 'Candidate: [^(]' >/dev/null; then
+        echo libosmesa6
+    else
+        echo libegl1 libgl1-mesa-dri
+    fi
+}
+
 if [ "$(id -u)" = 0 ]; then
-    echo "installing the software GL library (libosmesa6)" >&2
     apt-get update -qq
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends libosmesa6 \
-        >/dev/null
+    names=$(wanted)
+    echo "installing the software GL library ($names)" >&2
+    # shellcheck disable=SC2086 -- several names
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $names >/dev/null
 else
-    echo "unpacking the software GL library (libosmesa6) below $venv" >&2
     target=$(cd "$venv" && pwd)/lib/seatlook-gl
     work=$(mktemp -d)
     trap 'rm -rf "$work"' EXIT
@@ -42,10 +52,12 @@ else
     own=(-qq -o "Dir::State::Lists=$work/lists" -o "Dir::Cache=$work" -o "APT::Sandbox::User="
         -o Debug::NoLocking=1)
     apt-get "${own[@]}" update
+    names=$(wanted "${own[@]}")
+    echo "unpacking the software GL library ($names) below $venv" >&2
     # A simulated installation names exactly the packages that are not there yet.
-    packages=$(apt-get "${own[@]}" --simulate --no-install-recommends install libosmesa6 |
+    packages=$(apt-get "${own[@]}" --simulate --no-install-recommends install $names |
         awk '$1 == "Inst" {print $2}')
-    (cd "$work" && apt-get "${own[@]}" download libosmesa6 $packages)
+    (cd "$work" && apt-get "${own[@]}" download $names $packages)
     for package in "$work"/*.deb; do
         dpkg -x "$package" "$target"
     done

@@ -47,8 +47,29 @@ print(result.window, ctypes.CDLL(result.library).osmesa())
 TESTS = Path(__file__).parents[1]
 
 
-def run(code, prefix=()):
-    environment = {**os.environ, "PYTHONPATH": str(TESTS)}
+# Other packages load their libraries by the real system first.
+TELL = """
+import platform, sys
+import seatlook.pbr.shading.studio
+{system}
+"""
+WINDOWS = ["sys.platform = 'win32'", "platform.system = lambda: 'Windows'"]
+MACOS = ["sys.platform = 'darwin'", "platform.system = lambda: 'Darwin'"]
+KEPT = """
+import subprocess
+from seatlook.pbr.window_trial import try_window
+real, started = subprocess.run, []
+subprocess.run = lambda *words, **options: started.append(words) or real(*words, **options)
+from seatlook.pbr.backend import offscreen_backend
+print(offscreen_backend().window, len(started))
+"""
+# What nobody can use who has another system than Debian.
+FOREIGN = ("apt-get", "dpkg", "libEGL", "OSMesa")
+
+
+def run(code, prefix=(), **variables):
+    path = os.pathsep.join(filter(None, [str(TESTS), os.environ.get("PYTHONPATH")]))
+    environment = {**os.environ, "PYTHONPATH": path, **variables}
     return subprocess.run(
         [*prefix, sys.executable, "-c", code],
         capture_output=True,
@@ -68,6 +89,105 @@ def assert_readable(done):
 
 def test_refused_libraries_raise_before_vtk_is_imported():
     assert_readable(run(PATCH + ASK))
+
+
+@pytest.mark.parametrize("version", ["1.1", "2.1", "3.1"])
+def test_a_gl_too_old_for_vtk_is_said_and_ends_nothing(version):
+    done = run(ASK, MESA_GL_VERSION_OVERRIDE=version)
+    assert_readable(done)
+    assert "VTK draws with OpenGL 3.2 or later" in done.stdout
+    assert f"MESA_GL_VERSION_OVERRIDE={version} is set: unset it" in done.stdout
+    assert done.stderr == ""
+
+
+def test_doctor_finds_a_gl_too_old():
+    done = run(
+        "from seatlook.cli import run; import sys; sys.exit(run(['doctor']))",
+        MESA_GL_VERSION_OVERRIDE="1.1",
+    )
+    assert done.returncode == 3
+    assert "VTK draws with OpenGL 3.2 or later" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("system", "advice"),
+    [(w, "Mesa's opengl32.dll") for w in WINDOWS] + [(m, "at the Mac's screen") for m in MACOS],
+)
+def test_other_systems_get_advice_of_their_own(system, advice):
+    """VTK's own window is tried there, which an old GL closes on this system too."""
+    tell = TELL.format(system=system)
+    done = run(tell + ASK, MESA_GL_VERSION_OVERRIDE="1.1")
+    assert done.returncode == 3, done.stdout + done.stderr
+    assert advice in done.stdout
+    assert "VTK's window ended its process with signal" in done.stdout
+    assert not [word for word in FOREIGN if word in done.stdout]
+    ask = "from seatlook.pbr.backend import offscreen_backend; print(offscreen_backend())"
+    done = run(tell + ask)
+    assert done.returncode == 0, done.stderr
+    assert "VTK's own" in done.stdout
+
+
+@pytest.mark.parametrize("system", [WINDOWS[0], MACOS[0]])
+def test_other_systems_without_any_library_are_not_ended(tmp_path, system):
+    if not can_hide(tmp_path):
+        pytest.skip("this machine allows no private mounts")
+    cache = str(tmp_path / "cache")
+    done = run(TELL.format(system=system) + ASK, hidden(tmp_path), SEATLOOK_CACHE_DIR=cache)
+    assert done.returncode == 3, done.stdout + done.stderr
+    assert "VTK draws with OpenGL 3.2 or later" in done.stdout
+    assert not [word for word in FOREIGN if word in done.stdout]
+
+
+def test_a_window_that_opened_is_kept_until_something_changes(tmp_path):
+    cache = {"SEATLOOK_CACHE_DIR": str(tmp_path / "cache")}
+    first, again = run(KEPT, **cache), run(KEPT, **cache)
+    assert first.stdout.split() == [backend.offscreen_backend().window, "1"], first.stderr
+    assert again.stdout.split() == [backend.offscreen_backend().window, "0"], again.stderr
+    assert run(KEPT, **cache, MESA_DEBUG="silent").stdout.split()[1] == "1"
+    # One that did not open is tried again, and spoils nothing.
+    assert run(KEPT, **cache, MESA_GL_VERSION_OVERRIDE="1.1").returncode != 0
+    assert run(KEPT, **cache).stdout.split()[1] == "0"
+    (tmp_path / "cache" / "windows.json").write_text("{broken")
+    assert run(KEPT, **cache).stdout.split()[1] == "1"
+
+
+def test_a_cache_that_cannot_be_written_costs_only_the_trial(tmp_path):
+    (tmp_path / "cache").write_text("a file")
+    done = run(KEPT, SEATLOOK_CACHE_DIR=str(tmp_path / "cache"))
+    assert done.stdout.split()[1] == "1", done.stderr
+
+
+STUB = """#!/bin/sh
+echo "{name} $*" >> "{log}"
+case "{name} $*" in
+"apt-cache"*) echo "  Candidate: {candidate}" ;;
+"id -u") echo 0 ;;
+"python"*) [ -e "{log}.installed" ] || exit 3 ;;
+"apt-get install"*) touch "{log}.installed" ;;
+esac
+"""
+
+
+@pytest.mark.parametrize(
+    ("candidate", "packages"),
+    [("22.3.6-1", "libosmesa6"), ("(none)", "libegl1 libgl1-mesa-dri")],
+)
+def test_make_installs_what_the_system_has(tmp_path, candidate, packages):
+    """Debian's Mesa has no OSMesa from 25.1 on."""
+    log, folder = tmp_path / "log", tmp_path / "bin"
+    folder.mkdir()
+    for name in ("apt-get", "apt-cache", "dpkg", "id", "python"):
+        stub = folder / name
+        stub.write_text(STUB.format(name=name, log=log, candidate=candidate))
+        stub.chmod(0o755)
+    subprocess.run(
+        ["bash", str(TESTS.parent / ".ci" / "gl.sh"), str(tmp_path)],
+        env={**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"},
+        check=True,
+        capture_output=True,
+    )
+    (installed,) = (ln for ln in log.read_text().splitlines() if "apt-get install" in ln)
+    assert installed.endswith(f"--no-install-recommends {packages}")
 
 
 def hidden(folder):

@@ -7,6 +7,7 @@ position, normal and light follow from it in ``kernels``, in double precision an
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -158,6 +159,29 @@ def face_window() -> FaceWindow:
     """Return the one window of this process."""
     with _errors_raised():
         return FaceWindow()
+
+
+def open_window() -> str:
+    """Open and close a window, and return its class.
+
+    For a process of its own: VTK may end it, where no window opens.
+
+    Raises
+    ------
+    RenderError
+        VTK opened another class than the one it was told to, or OpenGL is too old for it.
+    """
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(True)
+    window.SetSize(8, 8)
+    name, wanted = window.GetClassName(), os.environ.get("VTK_DEFAULT_OPENGL_WINDOW", "")
+    if wanted and name != wanted:
+        raise RenderError("it gives no OpenGL that VTK can use")
+    window.AddRenderer(vtkRenderer())
+    window.Render()
+    if not window.SupportsOpenGL():
+        raise RenderError("its OpenGL is too old for VTK")
+    return str(name)
 
 
 def _float_pass() -> vtkFramebufferPass:
