@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from seatlook import io
+from seatlook import io, mesh
 from seatlook.assembly import assemble
 from seatlook.assembly.contradictions import contradictions, refuse
 from seatlook.chain.case import Case
@@ -23,6 +23,29 @@ def demo(tmp_path_factory):
     return folder
 
 
+def part_frames(folder):
+    """Give every edge of the border a frame and a curve of its own, named after its panel."""
+    scene = io.load_scene(folder / "scene.toml")
+    (frame,) = scene.frames
+    curves = dict(scene.foam.curves)
+    border = curves.pop(frame.curve)
+    stops = np.searchsorted(mesh.arc_length(border), np.array(frame.junctions) - 1e-6)
+    tables = []
+    for edge, start, end in zip(frame.edges, stops, stops[1:], strict=False):
+        name = edge.split(".")[0].lower()
+        curves[name] = border[start : end + 1]
+        tables.append(
+            f'[[frame]]\nname = "frame {name}"\nedges = "{edge}"\ncurve = "{name}"\n'
+            'stage = "cover"\n\n'
+        )
+    io.write_curves(curves, folder / "curves.toml")
+    text = (folder / "scene.toml").read_text()
+    head, rest = text.split("[[frame]]", 1)
+    (folder / "scene.toml").write_text(
+        head + "".join(tables) + "# Lights" + rest.split("# Lights", 1)[1]
+    )
+
+
 @pytest.fixture
 def edited(demo, tmp_path):
     """Copy the demo's files, one of them changed; return the path of the scene."""
@@ -30,6 +53,8 @@ def edited(demo, tmp_path):
     def edit(name, change):
         for file in demo.iterdir():
             (tmp_path / file.name).write_bytes(file.read_bytes())
+        if name == "curves.toml":
+            part_frames(tmp_path)
         text = (tmp_path / name).read_text()
         new = change(text)
         assert new != text
@@ -123,7 +148,7 @@ def test_exchanged_partners(edited):
 
 @pytest.mark.parametrize("apart", [32.0, 40.0])
 def test_frame_curves_that_part_where_panels_are_sewn(edited, apart):
-    path = edited("wires.toml", moved("frame_front", lambda points: points - [0, apart, 0]))
+    path = edited("curves.toml", moved("front", lambda points: points - [0, apart, 0]))
     ties = named(io.load_scene(path), "ties apart")
     assert len(ties) == 2
     for problem in ties:
@@ -155,9 +180,9 @@ def test_a_frame_curve_through_the_foam(edited):
         middle = np.sin(np.pi * np.linspace(0.0, 1.0, len(points)))
         return points + 60.0 * middle[:, None] * [0, 1, 0]
 
-    path = edited("wires.toml", moved("frame_front", inward))
+    path = edited("curves.toml", moved("front", inward))
     (problem,) = problems(io.load_scene(path))
-    assert re.match(r"'frame_front', \d\d mm inside the foam at \(", problem.got)
+    assert re.match(r"'front', \d\d mm inside the foam at \(", problem.got)
     assert problem.line == line_of(path, "curve = ")
 
 

@@ -152,4 +152,5 @@ def _waves(uv: FloatArray, seed: int) -> FloatArray:
 def _hooked_lines(hooks: Sequence[Hook], panel: Panel) -> dict[str, FloatArray]:
     """Internal lines of a panel that a hook pulls on; only these must be mesh edges."""
     names = {f"{panel.name}/{line}": line for line in panel.internal_lines}
-    return {h.line: panel.internal_lines[names[h.line]] for h in hooks if h.line in names}
+    hooked = {line for hook in hooks for line in hook.lines}
+    return {name: panel.internal_lines[line] for name, line in names.items() if name in hooked}

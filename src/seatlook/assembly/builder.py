@@ -13,7 +13,6 @@ from seatlook.assembly.ease import seam_ease
 from seatlook.assembly.lines import (
     Line,
     anchor_on,
-    curve_of,
     join,
     line_through,
     rings_on,
@@ -118,7 +117,7 @@ class Builder:
         lines = [self.edge(name) for name in names]
         if not reverse:
             return lines
-        return [Line(ln.vertices[::-1], ln.length - ln.arc[::-1]) for ln in lines]
+        return [line.turned() for line in lines]
 
     def stitching(self, seam: Seam, stage: Stage) -> Stitching:
         """Pair points of both sides at equal shares of the length between matching notches.
@@ -147,20 +146,13 @@ class Builder:
         )
 
     def hook(self, hook: Hook, scene: Scene, x: FloatArray) -> Anchor:
-        """Pull the near side of a seam, or an internal line, to its wire."""
-        seams = {s.name: s for s in self.pattern.seams}
-        line = self.edge(seams[hook.line].a) if hook.line in seams else self._lines[hook.line]
-        wire = scene.foam.curves[hook.wire]
-        return rings_on(line, hook, curve_of(wire), x)
+        """Pull the near sides of seams, or internal lines, to their wire."""
+        near = {seam.name: seam.a for seam in self.pattern.seams}
+        lines = [
+            self.edge(near[name]) if name in near else self._lines[name] for name in hook.lines
+        ]
+        return rings_on(lines, hook, scene.foam.curves[hook.wire], x)
 
     def frame(self, frame: Frame, scene: Scene, x: FloatArray) -> Anchor:
         """Pull free edges to a curve below the foam."""
-        curve = curve_of(scene.foam.curves[frame.curve])
-        return anchor_on(
-            self.chain(frame.edges),
-            curve,
-            x,
-            name=frame.name,
-            kind="frame",
-            stage=frame.stage,
-        )
+        return anchor_on(self.chain(frame.edges), frame, scene.foam.curves[frame.curve], x)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatlook import mesh
-from seatlook.model import Anchor, FloatArray, Hook, IntArray, Points
+from seatlook.model import Anchor, FloatArray, Frame, Hook, IntArray, Points
 
 _ON_LINE = 1e-6  # m; a vertex that near an end of the hooked part belongs to it
 
@@ -29,6 +28,10 @@ class Line:
             vertices=np.column_stack([self.vertices[k], self.vertices[k + 1]]),
             weights=np.column_stack([1.0 - w, w]),
         )
+
+    def turned(self) -> Line:
+        """The same line, run through from its other end."""
+        return Line(self.vertices[::-1], self.length - self.arc[::-1])
 
     @property
     def length(self) -> float:
@@ -63,76 +66,150 @@ def join(parts: Sequence[Points]) -> Points:
     )
 
 
-def curve_of(points: FloatArray) -> Callable[[FloatArray], FloatArray]:
-    """Return the curve as a function of the share of its length in [0, 1]."""
-    arc = mesh.arc_length(points) / mesh.segment_lengths(points).sum()
-    return lambda s: np.column_stack([np.interp(s, arc, points[:, k]) for k in range(3)])
+@dataclass(frozen=True, slots=True)
+class Course:
+    """The piece of a curve that a chain of lines takes, line by line.
+
+    Parameters
+    ----------
+    curve : (k, 3) float64 [m]
+    before : (n + 1,) float64 [m]   length of the chain where the part of each line begins that is
+                                    pulled, and where the last one ends
+    stops : (n + 1,) float64 [m]    places along the curve that these points go to
+    """
+
+    curve: FloatArray
+    before: FloatArray
+    stops: FloatArray
+
+    def targets(self, at: FloatArray) -> FloatArray:
+        """Places (s, 3) [m] of points at lengths ``at`` (s,) along the chain."""
+        arc = mesh.arc_length(self.curve)
+        place = np.interp(at, self.before, self.stops)
+        return np.column_stack([np.interp(place, arc, column) for column in self.curve.T])
+
+    def turned(self) -> Course:
+        """The same piece of the curve, run through from its other end."""
+        return replace(self, stops=self.stops[0] + self.stops[-1] - self.stops)
 
 
-def anchor_on(
+def course(
     lines: Sequence[Line],
-    curve: Callable[[FloatArray], FloatArray],
-    x: FloatArray,
-    *,
-    name: str,
-    kind: Literal["hook", "frame"],
-    stage: str,
-) -> Anchor:
-    """Send every vertex of the lines to its share of the curve, the shorter way round.
+    curve: FloatArray,
+    junctions: Sequence[float],
+    part: tuple[float, float | None] = (0.0, None),
+) -> Course:
+    """Lay lines along a curve, at equal shares of the lengths, or from junction to junction.
+
+    The first and the last junction are those of the part of the chain that is pulled.
+    """
+    before = _begins(lines)
+    if junctions:
+        start, end = part
+        reached = before.copy()
+        reached[[0, -1]] = start, before[-1] if end is None else end
+        return Course(curve, reached, np.array(junctions))
+    return Course(curve, before, before / before[-1] * mesh.arc_length(curve)[-1])
+
+
+def anchor_on(lines: Sequence[Line], frame: Frame, curve: FloatArray, x: FloatArray) -> Anchor:
+    """Send every vertex of the lines to its place on the curve, the shorter way round.
 
     One point per vertex: more could not all reach their targets.
     """
-    before = np.cumsum([0.0, *(ln.length for ln in lines)])
-    points = join([ln.points(ln.arc) for ln in lines])
-    at = np.concatenate([b + ln.arc for b, ln in zip(before, lines, strict=False)])
-    steps = [np.concatenate([[0.0], np.diff(ln.arc), [0.0]]) / 2 for ln in lines]
+    way = course(lines, curve, frame.junctions)
+    points = join([line.points(line.arc) for line in lines])
+    at = np.concatenate([b + ln.arc for b, ln in zip(_begins(lines), lines, strict=False)])
+    steps = [np.concatenate([[0.0], np.diff(line.arc), [0.0]]) / 2 for line in lines]
+    start, target = points.at(x), way.targets(at)
+    if not frame.junctions and _misses(way.turned().targets(at), start) < _misses(target, start):
+        target = way.turned().targets(at)
     return Anchor(
-        name=name,
-        kind=kind,
+        name=frame.name,
+        kind="frame",
         points=points,
-        target=_shorter_way(curve, at / before[-1], points.at(x)),
+        target=target,
         length=np.concatenate([step[:-1] + step[1:] for step in steps]),
-        stage=stage,
+        stage=frame.stage,
         at=at,
     )
 
 
-def rings_on(
-    line: Line, hook: Hook, curve: Callable[[FloatArray], FloatArray], x: FloatArray
-) -> Anchor:
-    """Pull a line to its wire: its vertices, or hog rings at the hook's pitch.
+def rings_on(lines: Sequence[Line], hook: Hook, wire: FloatArray, x: FloatArray) -> Anchor:
+    """Pull a chain of lines to its wire: their vertices, or hog rings at the hook's pitch.
 
-    A point at a share of the whole line's length goes to that share of the whole wire, whatever
-    part of the line is pulled. Rings stand at both ends of that part and at equal steps between
-    them, as near to the pitch as that allows, but not closer than the line's vertices.
+    A point at a length along the chain goes to its place on the wire, whatever part of the chain is
+    pulled. Rings stand at both ends of that part, at the junctions, and at equal steps between
+    them, as near to the pitch as that allows, but not closer than the lines' vertices. Each line
+    runs the way in which its places start nearer to the wire, and so does the wire.
     """
-    end = line.length if hook.end is None else min(hook.end, line.length)
-    if hook.pitch is None:
-        at = line.arc[(line.arc >= hook.start - _ON_LINE) & (line.arc <= end + _ON_LINE)]
-        if len(at) < 2:
-            at = np.array([hook.start, end])
-    else:
-        pitch = max(hook.pitch, line.spacing)
-        at = np.linspace(hook.start, end, max(1, round((end - hook.start) / pitch)) + 1)
-    step = np.concatenate([[0.0], np.diff(at), [0.0]]) / 2
-    points = line.points(at)
+    way = course(lines, wire, hook.junctions, (hook.start, hook.end))
+    ways = (way,) if hook.junctions and len(lines) > 1 else (way, way.turned())
+    way, lines = min(
+        (_run(lines, w, x) for w in ways), key=lambda run: _start_misses(run[0], run[1], x)
+    )
+    at, points = [], []
+    for line, begin, part in _parts(lines, hook):
+        at.append(begin + part)
+        points.append(line.points(part))
+    along = np.concatenate(at)
+    step = np.concatenate([[0.0], np.diff(along), [0.0]]) / 2
     return Anchor(
         name=hook.name,
         kind="hook",
-        points=points,
-        target=_shorter_way(curve, at / line.length, points.at(x)),
+        points=join(points),
+        target=way.targets(along),
         length=step[:-1] + step[1:],
         stage=hook.stage,
-        at=at,
+        at=along,
         limit=hook.limit,
     )
 
 
-def _shorter_way(
-    curve: Callable[[FloatArray], FloatArray], share: FloatArray, start: FloatArray
-) -> FloatArray:
-    """Points of the curve at shares of its length, from that end which is nearer to ``start``."""
-    target, turned = curve(share), curve(1.0 - share)
-    if np.linalg.norm(turned - start) < np.linalg.norm(target - start):
-        return turned
-    return target
+def _parts(lines: Sequence[Line], hook: Hook) -> Iterator[tuple[Line, float, FloatArray]]:
+    """Each line, where it begins, and its rings; the ring at a junction is the line's before."""
+    before = _begins(lines)
+    last = before[-1] if hook.end is None else min(hook.end, before[-1])
+    first = hook.start
+    for line, begin in zip(lines, before, strict=False):
+        low, high = max(first - begin, 0.0), min(last - begin, line.length)
+        if high < low or (begin > first and high <= low + _ON_LINE):
+            continue
+        if hook.pitch is None:
+            at = line.arc[(line.arc >= low - _ON_LINE) & (line.arc <= high + _ON_LINE)]
+            at = at if len(at) > 1 else np.array([low, high])
+        else:
+            pitch = max(hook.pitch, line.spacing)
+            at = np.linspace(low, high, max(1, round((high - low) / pitch)) + 1)
+        yield line, float(begin), at[1:] if begin > first else at
+
+
+def _run(lines: Sequence[Line], way: Course, x: FloatArray) -> tuple[Course, list[Line]]:
+    """The course, and the lines of a chain each turned to where it starts nearer to it."""
+    if len(lines) == 1:  # it keeps its way; the wire is turned
+        return way, list(lines)
+    return way, [
+        min((line, line.turned()), key=lambda one: _line_misses(one, begin, way, x))
+        for line, begin in zip(lines, _begins(lines), strict=False)
+    ]
+
+
+def _begins(lines: Sequence[Line]) -> FloatArray:
+    """Length of a chain [m] where each line begins, and in all."""
+    return np.cumsum([0.0, *(line.length for line in lines)])
+
+
+def _start_misses(way: Course, lines: Sequence[Line], x: FloatArray) -> float:
+    return sum(
+        _line_misses(line, begin, way, x)
+        for line, begin in zip(lines, _begins(lines), strict=False)
+    )
+
+
+def _line_misses(line: Line, begin: float, way: Course, x: FloatArray) -> float:
+    return _misses(way.targets(begin + line.arc), x[line.vertices])
+
+
+def _misses(target: FloatArray, start: FloatArray) -> float:
+    """Sum of the squared ways [m2] from where points start to their targets."""
+    return float(((target - start) ** 2).sum())

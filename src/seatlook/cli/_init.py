@@ -71,6 +71,7 @@ def init(
         Write over a scene that is in the folder already.
     """
     from seatlook.chain.start import init as start
+    from seatlook.chain.start.scene_file import hook_words
 
     with progress() as show:
         show("lay out")
@@ -89,7 +90,7 @@ def init(
     )
     note(
         f"free edges: {', '.join(proposal.free) or 'none'}",
-        f"hooks: {', '.join(f'{line} to {wire}' for wire, line in first.hooks.items()) or 'none'}",
+        f"hooks: {', '.join(map(hook_words, first.hooks)) or 'none'}",
         f"scene: {first.scene}; read {out / 'seams.toml'} over, then:",
         f"  seatlook check {first.scene}",
         f"  seatlook evaluate {first.scene} --out {out / 'gallery'}",

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal, TypedDict, Unpack
+from typing import TypedDict, Unpack
 
 from seatlook import io
 from seatlook.errors import InputError
@@ -15,23 +15,27 @@ from seatlook.flattening.cutting import cut_along, opened
 from seatlook.flattening.flatten import Flattened, flatten
 from seatlook.flattening.strain_map import write_strain_maps
 from seatlook.flattening.surface import DesignSurface
+from seatlook.io.surface.axes import Unit, Up
 from seatlook.io.toml import toml_key
 from seatlook.model import Fabric, Pose
 
 PATTERN, SEAMS, PLACEMENT = "pattern.dxf", "seams.toml", "placement.toml"
+PANELS = "panels.obj"
 
 
 class FlattenChoices(TypedDict, total=False):
     """How a design surface is flattened.
 
-    ``seam_lines``: curves file with lines along which the surface is cut into panels; ``unit`` of
-    the surface: "mm" or "m"; ``ease``: seam -> share by which one line is longer; ``short``: panel
-    -> share by which it is narrower across its grain; ``tension``: share by which all panels are
-    smaller; ``allowance`` [m]; ``fabric`` that takes the least strain energy.
+    ``seam_lines``: curves file with lines along which the surface is cut into panels; ``unit`` and
+    ``up`` of the surface, by its format and size if not given; ``ease``: seam -> share by which one
+    line is longer; ``short``: panel -> share by which it is narrower across its grain; ``tension``:
+    share by which all panels are smaller; ``allowance`` [m]; ``fabric`` that takes the least strain
+    energy.
     """
 
     seam_lines: Path | None
-    unit: Literal["mm", "m"]
+    unit: Unit | None
+    up: Up | None
     ease: Mapping[str, float]
     short: Mapping[str, float]
     tension: float
@@ -41,8 +45,9 @@ class FlattenChoices(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlattenedFiles:
-    """A flattened pattern, and the pictures of the strain that is left in its panels."""
+    """A design surface, its pattern, and the pictures of the strain left in the panels."""
 
+    form: DesignSurface
     flat: Flattened
     pictures: tuple[Path, ...]
 
@@ -52,8 +57,8 @@ def flatten_surface(
 ) -> FlattenedFiles:
     """Flatten the panels of a design surface, and write a pattern of them.
 
-    Leaves ``pattern.dxf``, ``seams.toml``, ``placement.toml``, ``seam-lengths.csv`` and pictures of
-    the strain; where it is cut along lines also ``panels.obj``, a group per panel.
+    Leaves ``pattern.dxf``, ``seams.toml``, ``placement.toml``, ``seam-lengths.csv``, pictures of
+    the strain, and ``panels.obj``: the surface with a group per panel.
 
     Raises
     ------
@@ -61,7 +66,9 @@ def flatten_surface(
         A surface or lines that cannot be read, cut or flattened; names that do not exist.
     """
     folder, lines = Path(out), choices.get("seam_lines")
-    form = read_design(Path(surface), unit=choices.get("unit", "mm"), seam_lines=lines)
+    form = read_design(
+        Path(surface), unit=choices.get("unit"), up=choices.get("up"), seam_lines=lines
+    )
     fabric = choices.get("fabric")
     flat = flatten(
         form,
@@ -71,19 +78,18 @@ def flatten_surface(
         short=choices.get("short", MappingProxyType({})),
         tension=choices.get("tension", 0.0),
     )
-    if lines is not None:
-        write_panels(form, folder / "panels.obj")
+    write_panels(form, folder / PANELS)
     write_flat_pattern(flat, folder)
     write_text(folder / PLACEMENT, placement_tables(flat.placement) + "\n")
     _write_seam_lengths(flat, folder / "seam-lengths.csv")
-    return FlattenedFiles(flat=flat, pictures=write_strain_maps(form, flat, folder))
+    return FlattenedFiles(form=form, flat=flat, pictures=write_strain_maps(form, flat, folder))
 
 
 def read_design(
-    path: Path, *, unit: Literal["mm", "m"] = "mm", seam_lines: Path | None = None
+    path: Path, *, unit: Unit | None = None, up: Up | None = None, seam_lines: Path | None = None
 ) -> DesignSurface:
     """Read a design surface, and cut it along the lines of a file, if there is one."""
-    form = DesignSurface(**io.read_surface(path, unit=unit, ungrouped="PANEL")._asdict())
+    form = DesignSurface(**io.read_surface(path, unit=unit, up=up, ungrouped="PANEL")._asdict())
     if seam_lines is None:
         return opened(form)
     lines = io.read_curves(seam_lines)

@@ -1,4 +1,4 @@
-"""Text files from templates; ``| toml`` spells a value, ``| toml_key`` a key, as TOML does."""
+"""Text files from templates; ``| toml`` spells a value and ``| toml_key`` a key as TOML does."""
 
 from __future__ import annotations
 
@@ -20,5 +20,9 @@ def write_template(template: Path, path: Path, **values: Any) -> None:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"toml": quoted, "toml_key": toml_key}
+    environment.filters |= {"toml": quoted, "toml_key": toml_key, "mm": _millimetres}
     write_text(path, environment.get_template(template.name).render(**values) + "\n")
+
+
+def _millimetres(metres: float) -> float:
+    return round(1e3 * metres, 6)

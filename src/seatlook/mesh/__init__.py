@@ -32,6 +32,9 @@ if TYPE_CHECKING:
         nearest_place as nearest_place,
     )
     from seatlook.mesh.polyline import (
+        nearest_places as nearest_places,
+    )
+    from seatlook.mesh.polyline import (
         resample as resample,
     )
     from seatlook.mesh.polyline import (
@@ -90,6 +93,7 @@ _PUBLIC: dict[str, str] = {
     "intersecting_pairs": "seatlook.mesh.intersection",
     "length": "seatlook.mesh.polyline",
     "nearest_place": "seatlook.mesh.polyline",
+    "nearest_places": "seatlook.mesh.polyline",
     "resample": "seatlook.mesh.polyline",
     "segment_lengths": "seatlook.mesh.polyline",
     "triangulate": "seatlook.mesh.outline",
@@ -114,6 +118,7 @@ __all__ = [
     "intersecting_pairs",
     "length",
     "nearest_place",
+    "nearest_places",
     "resample",
     "segment_lengths",
     "triangulate",

@@ -13,19 +13,14 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def distance_to_polyline(points: FloatArray, line: FloatArray) -> FloatArray:
-    """Distance (m,) of points (m, 2) to an open polyline (k, 2), in its unit.
+    """Distance (m,) of points (m, d) to an open polyline (k, d), in its unit.
 
     Examples
     --------
     >>> distance_to_polyline(np.array([[0.5, 1.0], [2.0, 0.0]]), np.array([[0.0, 0], [1, 0]]))
     array([1., 1.])
     """
-    start, step = line[:-1], np.diff(line, axis=0)
-    offset = points[:, None] - start
-    length2 = np.maximum((step**2).sum(axis=1), 1e-300)
-    along = np.clip((offset * step).sum(axis=2) / length2, 0.0, 1.0)
-    gap = offset - along[..., None] * step
-    return np.asarray(np.sqrt((gap**2).sum(axis=2)).min(axis=1))
+    return nearest_places(line, points)[0]
 
 
 def nearest_place(line: FloatArray, point: FloatArray) -> tuple[float, float]:
@@ -36,12 +31,21 @@ def nearest_place(line: FloatArray, point: FloatArray) -> tuple[float, float]:
     >>> nearest_place(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), np.array([1.5, 0.5]))
     (0.5, 1.5)
     """
-    step = np.diff(line, axis=0)
-    size = np.hypot(*step.T)
-    along = np.clip(((point - line[:-1]) * step).sum(axis=1) / size**2, 0.0, 1.0)
-    distance = np.hypot(*(point - line[:-1] - along[:, None] * step).T)
-    k = int(distance.argmin())
-    return float(distance[k]), float(arc_length(line)[k] + along[k] * size[k])
+    distance, place = nearest_places(line, point[None])
+    return float(distance[0]), float(place[0])
+
+
+def nearest_places(line: FloatArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Distances (m,) of points (m, d) from a polyline (k, d), and arc lengths (m,) there [m]."""
+    start, step = line[:-1], np.diff(line, axis=0)
+    offset = points[:, None] - start
+    length2 = np.maximum((step**2).sum(axis=1), 1e-300)
+    along = np.clip((offset * step).sum(axis=2) / length2, 0.0, 1.0)
+    distance = np.sqrt(((offset - along[..., None] * step) ** 2).sum(axis=2))
+    k = distance.argmin(axis=1)
+    row = np.arange(len(points))
+    place = arc_length(line)[k] + along[row, k] * np.sqrt(length2[k])
+    return np.asarray(distance[row, k]), np.asarray(place)
 
 
 def segment_lengths(polyline: FloatArray) -> FloatArray:

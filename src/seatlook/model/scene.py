@@ -57,36 +57,55 @@ class Pose:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hook:
-    """A sew line pulled to a wire.
+    """A sew line, or a chain of them, pulled to a wire.
 
     Parameters
     ----------
     line : name of a seam, or ``PANEL/LINE`` for an internal line
+    chain : instead of ``line``: such names, one after the other along the wire
     wire : name of a curve of the foam
     stage : stage in which it is pulled in
+    junctions : float [m], one more than lines, optional
+        Places along the wire where the lines of the chain begin and the last one ends, as far as
+        they are pulled. Without them the lines share the whole wire by their lengths.
     pitch : float [m], optional     distance of hog rings; without it, pulled all along
-    start, end : float [m]          part of the line's length that is pulled; ``end`` None is all
+    start, end : float [m]          part of the whole length that is pulled; ``end`` None is all
     limit : float [N], optional     largest pull allowed on one ring
     """
 
     name: str
-    line: str
+    line: str = ""
+    chain: tuple[str, ...] = ()
     wire: str
     stage: str
+    junctions: tuple[float, ...] = ()
     pitch: float | None = None
     start: float = 0.0
     end: float | None = None
     limit: float | None = None
 
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The lines that are pulled, in their order along the wire."""
+        return self.chain or (self.line,)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Frame:
-    """Free edges, one after the other, pulled to a curve below the foam."""
+    """Free edges, one after the other, pulled to a curve below the foam.
+
+    Parameters
+    ----------
+    junctions : float [m], one more than edges, optional
+        Places along the curve where the edges begin and the last one ends. Without them the edges
+        share the whole curve by their lengths.
+    """
 
     name: str
     edges: tuple[str, ...]
     curve: str
     stage: str
+    junctions: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,14 +8,13 @@ from types import MappingProxyType
 from typing import TypedDict, Unpack
 
 from seatlook import io
-from seatlook.flattening import flatten
-from seatlook.flattening.files import placement_tables, write_flat_pattern, write_panels
-from seatlook.io.templates import write_template
+from seatlook.chain.start.scene_file import CURVES, SCENE
+from seatlook.chain.start.surface import flatten_scene
+from seatlook.flattening.files import PANELS, PATTERN, PLACEMENT, SEAMS, write_panels
 from seatlook.seats.demo import demo_design, demo_foam_mesh
 
-SCENE = "scene.toml"
-LEFT = ("design.obj", "foam.obj", "wires.toml", "pattern.dxf", "seams.toml", SCENE)
-_TEMPLATE = Path(__file__).with_name("demo_scene.toml.j2")
+DESIGN, FOAM, WIRES = "design.obj", "foam.obj", "wires.toml"
+LEFT = (DESIGN, FOAM, WIRES, PATTERN, SEAMS, PLACEMENT, PANELS, CURVES, SCENE)
 
 
 class DemoChoices(TypedDict, total=False):
@@ -53,23 +52,31 @@ def write_demo(out: Path | str, **choices: Unpack[DemoChoices]) -> Path:
     ease, short = choices.get("ease", nothing), choices.get("short", nothing)
     thickness = io.read_material(material).fabric.thickness
     io.read_material(insert)
-    surface = demo_design(element_size=size)
-    flat = flatten(surface, tension=tension, ease=ease, short=short)
     foam = demo_foam_mesh(element_size=size, cover_thickness=thickness)
-    write_panels(surface, folder / "design.obj")
-    io.write_obj(foam.vertices, foam.faces, folder / "foam.obj")
-    io.write_curves(foam.curves, folder / "wires.toml")
-    write_flat_pattern(flat, folder)
-    write_template(
-        _TEMPLATE,
-        folder / SCENE,
+    write_panels(demo_design(element_size=size), folder / DESIGN)
+    io.write_obj(foam.vertices, foam.faces, folder / FOAM)
+    wires = {name: foam.curves[name] for name in ("trench_left", "trench_right")}
+    io.write_curves(wires, folder / WIRES)
+    spoiled = [*(f"ease {k} {v:.1%}" for k, v in ease.items()),
+               *(f"short {k} {v:.1%}" for k, v in short.items())]  # fmt: skip
+    _, made = flatten_scene(
+        folder / DESIGN,
+        folder / FOAM,
+        folder,
+        flattening={"tension": tension, "ease": ease, "short": short},
+        wires=folder / WIRES,
+        name=", ".join(["demo seat", *spoiled]),
         material=material,
-        insert=insert,
+        panels={"INSERT": insert},
         element_size_mm=choices.get("element_size_mm", 7.0),
         seed=choices.get("seed", 0),
-        tension=tension,
-        placement=placement_tables(flat.placement),
-        spoiled=[*(f"ease {k} {v:.1%}" for k, v in ease.items()),
-                 *(f"short {k} {v:.1%}" for k, v in short.items())],
-    )  # fmt: skip
-    return folder / SCENE
+        textures=("black-leather", "bright-leather", "suede"),
+        force=True,
+        bulbs=("bulb left", "bulb right"),
+        remarks=(
+            "The demo seat: a car-seat cushion about 0.5 m wide, with two bolsters.",
+            f"Its cover is cut {100 * tension:g} % smaller than the foam asks so that it is taut.",
+            *(f"Spoiled on purpose: {what}." for what in spoiled),
+        ),
+    )
+    return made.scene

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import combinations
 from typing import Any
 
@@ -42,12 +42,19 @@ def check_wires(
         if wire is None:
             continue
         key = ("hook", number, "wire")
-        length, line = mesh.length(wire), line_length(hook["line"], pattern)
-        if line is not None and line > LONGEST_LINE * length:
+        lines = (hook["line"],) if hook["line"] else hook["chain"] or ()
+        length, chain = mesh.length(wire), chain_length(lines, pattern)
+        part = hook["junctions_mm"]
+        piece = length if part is None else float(np.ptp(part))
+        if chain is not None and part is not None:  # junctions are those of the part pulled
+            end = chain if hook["to_mm"] is None else hook["to_mm"]
+            chain = end - (hook["from_mm"] or 0.0)
+        if chain is not None and chain > LONGEST_LINE * piece:
+            at = f"its wire {hook['wire']!r}" if part is None else f"its part of {hook['wire']!r}"
             document.report(
-                ("hook", number, "line"),
-                f"{hook['line']!r}, {1e3 * line:.1f} mm long",
-                f"at most the length of its wire {hook['wire']!r}, {1e3 * length:.1f} mm",
+                ("hook", number, "line" if hook["line"] else "chain"),
+                f"{' + '.join(map(repr, lines))}, {1e3 * chain:.1f} mm long",
+                f"at most the length of {at}, {1e3 * piece:.1f} mm",
             )
         if depth[hook["wire"]] > DEEPEST_WIRE:
             document.report(
@@ -143,10 +150,14 @@ def _sewn_points(name: str, pattern: Pattern) -> FloatArray:
     return np.concatenate([np.zeros((0, 2)), *lines])
 
 
-def line_length(line: str | None, pattern: Pattern | None) -> float | None:
-    """Return the length of a seam's near side or of PANEL/LINE; None for unknown names."""
-    if pattern is None or line is None:
-        return None
+def chain_length(lines: Sequence[str], pattern: Pattern | None) -> float | None:
+    """Return the length [m] of lines, each a seam's near side or PANEL/LINE; None if unknown."""
+    lengths = [None if pattern is None else _line_length(line, pattern) for line in lines]
+    known = [length for length in lengths if length is not None]
+    return sum(known) if known and len(known) == len(lengths) else None
+
+
+def _line_length(line: str, pattern: Pattern) -> float | None:
     for seam in pattern.seams:
         if seam.name == line:
             return pattern.edge_length(seam.a)

@@ -106,7 +106,10 @@ KEYS: dict[str, Kind] = {
     "hook": Rows(
         Table(
             {
-                **dict.fromkeys(("name", "line", "wire", "stage"), _NAME),
+                **dict.fromkeys(("name", "wire", "stage"), _NAME),
+                "line": Text(),
+                "chain": Texts(),
+                "junctions_mm": Array(shape=(None,), low=0, scale=MM),
                 "pitch_mm": Number(above=0, high=1000, scale=MM),
                 "from_mm": Number(low=0, scale=MM, default=0.0),
                 "to_mm": Number(above=0, scale=MM),
@@ -120,6 +123,7 @@ KEYS: dict[str, Kind] = {
                 "name": _NAME,
                 "edges": Texts(or_one=True, required=True),
                 "curve": _NAME,
+                "junctions_mm": Array(shape=(None,), low=0, scale=MM),
                 "stage": _NAME,
             }
         )

@@ -5,18 +5,22 @@ Where the pattern or the foam could not be read, names in it are not checked.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from seatlook.io.scene.checks import line_length
+from seatlook.io.scene.checks import chain_length
 from seatlook.io.schema import known
 from seatlook.io.toml import Document, Key
+from seatlook.mesh import length
 from seatlook.model import Foam, Frame, Hook, Limit, Pattern, Stage, ZoneBox, stage_units
 from seatlook.model.scene import SCORE_MEASURES
 from seatlook.model.zones import FREE_EDGE, zones
 
 Row = dict[str, Any]
+
+_ON_CURVE = 5e-4  # m by which a place given in a file may lie beyond the end of its line
 
 
 def make_stages(document: Document, rows: list[Row], pattern: Pattern | None) -> tuple[Stage, ...]:
@@ -51,45 +55,91 @@ def make_stages(document: Document, rows: list[Row], pattern: Pattern | None) ->
 def make_hooks(
     document: Document, row: Row, pattern: Pattern | None, foam: Foam | None
 ) -> tuple[Hook, ...]:
-    """Build the hooks: a seam or an internal line, and a wire of the foam."""
-    lines: list[str] = []
-    if pattern is not None:
-        lines = [s.name for s in pattern.seams]
-        lines += [f"{p.name}/{name}" for p in pattern.panels for name in p.internal_lines]
+    """Build the hooks: seams or internal lines, and a wire of the foam."""
+    hooks = []
     for number, hook in enumerate(row["hook"]):
         key = ("hook", number)
         _check_stage(document, key, hook["stage"], row)
-        if pattern is not None:
-            known(document, (*key, "line"), hook["line"], lines, "a seam or PANEL/LINE")
+        lines = _hooked_lines(document, key, hook, pattern)
         if foam is not None:
             known(document, (*key, "wire"), hook["wire"], foam.curves, "a curve of the foam")
-        _check_part(document, key, hook, pattern)
-    return tuple(
-        Hook(
-            name=hook["name"],
-            line=hook["line"],
-            wire=hook["wire"],
-            stage=hook["stage"],
-            pitch=hook["pitch_mm"],
-            start=hook["from_mm"] or 0.0,
-            end=hook["to_mm"],
-            limit=hook["limit_n"],
+        _check_part(document, key, hook, lines, pattern)
+        hooks.append(
+            Hook(
+                name=hook["name"],
+                line=hook["line"] or "",
+                chain=hook["chain"] or (),
+                wire=hook["wire"],
+                stage=hook["stage"],
+                junctions=_junctions(document, key, hook, len(lines), _length(foam, hook["wire"])),
+                pitch=hook["pitch_mm"],
+                start=hook["from_mm"] or 0.0,
+                end=hook["to_mm"],
+                limit=hook["limit_n"],
+            )
         )
-        for hook in row["hook"]
-    )
+    return tuple(hooks)
 
 
-def _check_part(document: Document, key: Key, hook: Row, pattern: Pattern | None) -> None:
-    """Refuse a part of a line that is turned round or goes on beyond the line."""
+def _hooked_lines(
+    document: Document, key: Key, hook: Row, pattern: Pattern | None
+) -> tuple[str, ...]:
+    """The lines of a hook; reports names that do not exist or come twice, and none or both keys."""
+    lines = (hook["line"],) if hook["line"] else hook["chain"] or ()
+    if (hook["line"] is None) == (hook["chain"] is None):
+        got = "neither" if hook["line"] is None else "both"
+        document.report((*key, "line"), got, "one of line and chain")
+    if pattern is not None:
+        names = [seam.name for seam in pattern.seams]
+        names += [f"{p.name}/{name}" for p in pattern.panels for name in p.internal_lines]
+        for name in lines:
+            at = "line" if hook["line"] else "chain"
+            known(document, (*key, at), name, names, "a seam or PANEL/LINE")
+    for name in sorted({name for name in lines if lines.count(name) > 1}):
+        document.report((*key, "chain"), f"{name!r} twice", "each line once")
+    return tuple(lines)
+
+
+def _length(foam: Foam | None, curve: str | None) -> float | None:
+    """Length [m] of a curve of the foam, if it is there."""
+    points = None if foam is None or curve is None else foam.curves.get(curve)
+    return None if points is None else length(points)
+
+
+def _junctions(
+    document: Document, key: Key, row: Row, lines: int, curve: float | None
+) -> tuple[float, ...]:
+    """Places along a curve [m] of a chain's lines: one more than lines, rising, on the curve."""
+    values = row["junctions_mm"]
+    if values is None:
+        return ()
+    places = tuple(values.tolist())
+    shown = [round(1e3 * place, 3) for place in places]
+    if len(places) != lines + 1:
+        expected = f"{lines + 1} places, where the lines begin and the last one ends"
+        document.report((*key, "junctions_mm"), shown, expected)
+    elif not all(a < b for a, b in pairwise(places)):
+        document.report((*key, "junctions_mm"), shown, "places that rise along the curve")
+    elif curve is not None and places[-1] > curve + _ON_CURVE:
+        expected = f"places on the curve, which is {1e3 * curve:.1f} mm long"
+        document.report((*key, "junctions_mm"), shown, expected)
+    return places
+
+
+def _check_part(
+    document: Document, key: Key, hook: Row, lines: tuple[str, ...], pattern: Pattern | None
+) -> None:
+    """Refuse a part of a chain that is turned round or goes on beyond it."""
     start, end = hook["from_mm"], hook["to_mm"]
-    length = None if pattern is None else line_length(hook["line"], pattern)
+    long = chain_length(lines, pattern)
     if end is not None and start is not None and not start < end:
         document.report((*key, "to_mm"), f"{1e3 * end:g}", f"above from_mm, {1e3 * start:g}")
-    if length is None:
+    if long is None:
         return
     for name, value in (("from_mm", start), ("to_mm", end)):
-        if value is not None and value > length + 5e-4:
-            expected = f"at most the length of {hook['line']!r}, {1e3 * length:.1f}"
+        if value is not None and value > long + _ON_CURVE:
+            whole = " + ".join(map(repr, lines))
+            expected = f"at most the length of {whole}, {1e3 * long:.1f}"
             document.report((*key, name), f"{1e3 * value:g}", expected)
 
 
@@ -97,6 +147,7 @@ def make_frames(
     document: Document, row: Row, pattern: Pattern | None, foam: Foam | None
 ) -> tuple[Frame, ...]:
     """Build the frames: free edges, and a curve below the foam."""
+    frames = []
     for number, frame in enumerate(row["frame"]):
         key = ("frame", number)
         _check_stage(document, key, frame["stage"], row)
@@ -106,7 +157,11 @@ def make_frames(
                 known(document, (*key, "edges"), edge, pattern.edges, what)
         if foam is not None:
             known(document, (*key, "curve"), frame["curve"], foam.curves, "a curve of the foam")
-    return tuple(Frame(**frame) for frame in row["frame"])
+        edges, curve = frame["edges"] or (), _length(foam, frame["curve"])
+        places = _junctions(document, key, frame, len(edges), curve)
+        values = {name: value for name, value in frame.items() if name != "junctions_mm"}
+        frames.append(Frame(**values, junctions=places))
+    return tuple(frames)
 
 
 def _check_stage(document: Document, key: Key, name: str | None, row: Row) -> None:

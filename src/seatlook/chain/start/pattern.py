@@ -1,0 +1,198 @@
+"""A first scene for a pattern and a foam: seams, poses and hooks guessed, and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import TypedDict, Unpack
+
+import numpy as np
+
+from seatlook import io
+from seatlook.assembly.hooking import hooks_beside
+from seatlook.assembly.seam_guess import Proposal, propose_seams
+from seatlook.assembly.unfolding import Layout, lay_out
+from seatlook.chain.start.scene_file import (
+    COVER,
+    FOAM_MATERIAL,
+    HOOK,
+    MATERIAL,
+    FoamFile,
+    SceneDraft,
+    element_size,
+    read_foam_file,
+    refuse_scene,
+    write_scene,
+)
+from seatlook.errors import InputError
+from seatlook.io.pattern.units import Units
+from seatlook.io.surface.axes import Unit, Up
+from seatlook.model import FloatArray, Frame, Hook, Pattern
+
+SEAMS = "seams.toml"
+_NEAREST_WIRE = 0.08  # m from a seam to the wire it may be hooked to
+
+
+class StartChoices(TypedDict, total=False):
+    """How a first scene is made; all may be left out.
+
+    ``unit`` ("mm", "cm", "m", "inch") and ``up`` ("z", "y") of the foam's file; ``material`` and
+    ``foam_material``: supplied names or files; ``seams``: file taken instead of a guess; ``wires``:
+    curves file of the wires in the foam; ``size``, ``units`` and ``encoding`` of the pattern, and
+    ``grain_deg`` of its pieces without a grain line; ``top``: the panel on top, turned by
+    ``turn_deg``; ``force``: write over a scene that is there.
+    """
+
+    unit: Unit | None
+    up: Up | None
+    material: str
+    foam_material: str
+    seams: Path | None
+    wires: Path | None
+    size: str | None
+    units: Units | None
+    encoding: str | None
+    grain_deg: float | None
+    top: str | None
+    turn_deg: float
+    force: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FirstScene:
+    """A scene that was begun.
+
+    Parameters
+    ----------
+    scene : its file
+    proposal : the seams, and why each was guessed
+    hooks : seams that lie beside wires
+    notes : sentences on what was guessed of the foam
+    """
+
+    scene: Path
+    proposal: Proposal
+    hooks: tuple[Hook, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def reasons(self) -> dict[str, str]:
+        """Seam -> why it was guessed, and what else would fit."""
+        return _reasons(self.proposal)
+
+
+def init(
+    pattern: Path | str, foam: Path | str, out: Path | str, **choices: Unpack[StartChoices]
+) -> FirstScene:
+    """Write a commented scene for a pattern and a foam, ready to check and evaluate.
+
+    Guesses which edges are sewn together, where the panels start, where the free edges are pulled
+    to, and which wires the seams are hooked to.
+
+    Raises
+    ------
+    InputError
+        Files that cannot be read or are in the wrong order, a folder with a scene in it.
+    """
+    cut, folder, own_seams = Path(pattern), Path(out), choices.get("seams")
+    _check_files(cut, Path(foam), folder, force=choices.get("force", False))
+    io.read_material(choices.get("material", MATERIAL))
+    proposal = _sewn(cut, own_seams, choices)
+    filling = read_foam_file(
+        Path(foam),
+        choices.get("foam_material", FOAM_MATERIAL),
+        unit=choices.get("unit"),
+        up=choices.get("up"),
+        wires=choices.get("wires"),
+    )
+    layout = lay_out(
+        proposal.pattern,
+        filling.body,
+        first=choices.get("top"),
+        turn_deg=choices.get("turn_deg", 0.0),
+        free=proposal.free,
+    )
+    if own_seams is None:
+        io.write_seams(proposal.pattern, folder / SEAMS, notes=_reasons(proposal))
+    files = cut, folder / SEAMS if own_seams is None else own_seams
+    draft = _draft(files, proposal.pattern, layout, filling, choices)
+    return FirstScene(
+        scene=write_scene(draft, folder), proposal=proposal, hooks=draft.hooks, notes=filling.notes
+    )
+
+
+def _draft(
+    files: tuple[Path, Path],
+    pattern: Pattern,
+    layout: Layout,
+    foam: FoamFile,
+    choices: StartChoices,
+) -> SceneDraft:
+    """What the scene of a pattern and its seams file is written from."""
+    material = choices.get("material", MATERIAL)
+    lines = {seam.name: _placed(pattern, seam.a, layout) for seam in pattern.seams}
+    return SceneDraft(
+        name=files[0].stem,
+        pattern=files[0],
+        seams=files[1],
+        reading={
+            "size": choices.get("size"),
+            "units": choices.get("units"),
+            "encoding": choices.get("encoding"),
+            "grain_deg": choices.get("grain_deg"),
+        },
+        guessed=choices.get("seams") is None,
+        material=material,
+        foam=foam,
+        curves=layout.curves,
+        hooks=hooks_beside(lines, foam.body.curves, reach=_NEAREST_WIRE, stage=HOOK),
+        frames=tuple(
+            Frame(name=edge, edges=(edge,), curve=edge, stage=COVER) for edge in layout.curves
+        ),
+        poses=layout.poses,
+        element_size_mm=element_size(io.read_material(material).fabric, foam.body.material),
+    )
+
+
+def _check_files(pattern: Path, foam: Path, out: Path, *, force: bool) -> None:
+    """Refuse files in the wrong order, and a folder with a scene in it."""
+    if pattern.suffix.lower() != ".dxf" and foam.suffix.lower() == ".dxf":
+        raise InputError.single(
+            "files", got=f"{pattern.name} {foam.name}", expected="first the pattern, then the foam"
+        )
+    refuse_scene(out, SEAMS, force=force)
+
+
+def _sewn(pattern: Path, seams: Path | None, choices: StartChoices) -> Proposal:
+    """Guess the seams, or read those of the user."""
+    size, units = choices.get("size"), choices.get("units")
+    encoding, grain_deg = choices.get("encoding"), choices.get("grain_deg")
+    if seams is None:
+        return propose_seams(
+            io.read_panels(pattern, size=size, units=units, encoding=encoding, grain_deg=grain_deg)
+        )
+    read = io.read_pattern(
+        pattern, seams, size=size, units=units, encoding=encoding, grain_deg=grain_deg
+    )
+    sewn = {name for seam in read.seams for name in (seam.a, *seam.b)}
+    return Proposal(
+        pattern=read,
+        reasons=MappingProxyType({seam.name: "as in the seams file" for seam in read.seams}),
+        rivals=MappingProxyType({}),
+        free=tuple(name for name in read.edges if name not in sewn),
+    )
+
+
+def _placed(pattern: Pattern, edge: str, layout: Layout) -> FloatArray:
+    """Points (k, 3) [m] of an edge where its panel starts."""
+    pose = layout.poses[pattern.edges[edge].panel]
+    return np.asarray(pattern.edge_points(edge) @ pose.rotation[:, :2].T + pose.translation)
+
+
+def _reasons(proposal: Proposal) -> dict[str, str]:
+    return {
+        name: reason
+        + (f"; would fit as well: {', '.join(also)}" if (also := proposal.rivals.get(name)) else "")
+        for name, reason in proposal.reasons.items()
+    }

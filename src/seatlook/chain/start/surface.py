@@ -1,0 +1,186 @@
+"""A design surface made into a scene that runs: flattened, framed at its borders, hooked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import TypedDict, Unpack
+
+from seatlook import io
+from seatlook.assembly.hooking import hooks_beside
+from seatlook.chain.start.scene_file import (
+    COVER,
+    FOAM_MATERIAL,
+    HOOK,
+    MATERIAL,
+    TEXTURES,
+    FoamFile,
+    SceneDraft,
+    element_size,
+    hook_words,
+    read_foam_file,
+    refuse_scene,
+    write_scene,
+)
+from seatlook.flattening.border import borders
+from seatlook.flattening.files import (
+    PANELS,
+    PATTERN,
+    SEAMS,
+    FlattenChoices,
+    FlattenedFiles,
+    flatten_surface,
+)
+from seatlook.flattening.pattern import pair
+from seatlook.flattening.surface import DesignSurface, sides
+from seatlook.io.surface.axes import Unit, Up
+from seatlook.model import FloatArray, Frame, Pose
+
+NEAREST_WIRE = 0.030  # m from a seam of the design to the wire it is hooked to
+
+
+class SceneChoices(TypedDict, total=False):
+    """What a scene over a flattened surface is made with; all may be left out.
+
+    ``material`` of all panels but those in ``panels`` (panel -> material) and ``foam_material``:
+    supplied names or files. ``wires``: curves file of the wires in the foam. ``foam_unit`` and
+    ``foam_up`` of the foam's file; by its format and size if not given. ``element_size_mm`` and
+    ``seed`` of the mesh; ``name``, ``textures``, ``bulbs`` (rigs) and ``remarks`` (comments at the
+    top) of the scene. ``force``: write over a scene that is there.
+    """
+
+    material: str
+    panels: Mapping[str, str]
+    foam_material: str
+    wires: Path | None
+    foam_unit: Unit | None
+    foam_up: Up | None
+    element_size_mm: float | None
+    seed: int
+    name: str
+    textures: tuple[str, ...]
+    bulbs: tuple[str, ...]
+    remarks: tuple[str, ...]
+    force: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlattenedScene:
+    """A surface that was flattened into a scene.
+
+    Parameters
+    ----------
+    scene : its file
+    draft : what it was written from
+    """
+
+    scene: Path
+    draft: SceneDraft
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the scene holds, and how to go on."""
+        hooks, frames = self.draft.hooks, self.draft.frames
+        hooked = {hook.wire for hook in hooks}
+        loose = [name for name in self.draft.foam.body.curves if name not in hooked]
+        return (
+            *self.draft.foam.notes,
+            f"borders: {', '.join(f.name for f in frames) or 'none, the cover is closed'}",
+            f"hooks: {', '.join(map(hook_words, hooks)) or 'none'}",
+            *(f"wire {name}: no seam runs beside it" for name in loose),
+            f"scene: {self.scene}; next:",
+            f"  seatlook check {self.scene}",
+            f"  seatlook evaluate {self.scene} --out {self.scene.with_name('gallery')}",
+        )
+
+
+def flatten_scene(
+    surface: Path | str,
+    foam: Path | str,
+    out: Path | str,
+    *,
+    flattening: FlattenChoices | None = None,
+    **choices: Unpack[SceneChoices],
+) -> tuple[FlattenedFiles, FlattenedScene]:
+    """Flatten a design surface and write a scene in which the pattern is pulled over a foam.
+
+    Leaves what :func:`seatlook.flattening.files.flatten_surface` does, ``curves.toml`` and
+    ``scene.toml``. Free borders are pulled to where they lie on the surface, one closed curve for
+    each border; seams beside wires are hooked to them.
+
+    Parameters
+    ----------
+    surface, foam : files; out : folder
+    flattening : how the surface is flattened
+
+    Raises
+    ------
+    InputError
+        Files that cannot be read; a surface that cannot be cut or flattened; unknown names.
+    """
+    folder = Path(out)
+    refuse_scene(folder, force=choices.get("force", False))
+    filling = foam_file(Path(foam), **choices)
+    made = flatten_surface(surface, folder, **(flattening or {}))
+    return made, scene_over(made.form, made.flat.placement, filling, folder, **choices)
+
+
+def foam_file(foam: Path, **choices: Unpack[SceneChoices]) -> FoamFile:
+    """Read the foam, its material and wires, as the choices of a scene say."""
+    return read_foam_file(
+        foam,
+        choices.get("foam_material", FOAM_MATERIAL),
+        unit=choices.get("foam_unit"),
+        up=choices.get("foam_up"),
+        wires=choices.get("wires"),
+    )
+
+
+def scene_over(
+    form: DesignSurface,
+    poses: Mapping[str, Pose],
+    foam: FoamFile,
+    folder: Path,
+    **choices: Unpack[SceneChoices],
+) -> FlattenedScene:
+    """Write the scene of a surface whose pattern lies in a folder already; see ``flatten_scene``.
+
+    Parameters
+    ----------
+    form : the design surface
+    poses : where the flat panels start
+    """
+    material = choices.get("material", MATERIAL)
+    size = element_size(io.read_material(material).fabric, foam.body.material)
+    around, wires = borders(form), foam.body.curves
+    draft = SceneDraft(
+        name=choices.get("name", folder.resolve().name),
+        pattern=folder / PATTERN,
+        seams=folder / SEAMS,
+        material=material,
+        panels=choices.get("panels", MappingProxyType({})),
+        foam=foam,
+        curves={border.name: border.curve for border in around},
+        design=folder / PANELS,
+        hooks=hooks_beside(_seam_lines(form), wires, reach=NEAREST_WIRE, stage=HOOK),
+        frames=tuple(
+            Frame(name=b.name, edges=b.edges, curve=b.name, stage=COVER, junctions=b.junctions)
+            for b in around
+        ),
+        poses=poses,
+        element_size_mm=choices.get("element_size_mm") or size,
+        seed=choices.get("seed", 0),
+        textures=choices.get("textures", TEXTURES),
+        bulbs=choices.get("bulbs", ("bulb",)),
+        remarks=choices.get("remarks", ()),
+    )
+    return FlattenedScene(scene=write_scene(draft, folder), draft=draft)
+
+
+def _seam_lines(form: DesignSurface) -> dict[str, FloatArray]:
+    """Where each seam runs on the design surface, (k, 3) [m]."""
+    all_sides = sides(form.patches())
+    points = {side.name: form.vertices[side.vertices] for side in all_sides}
+    return {seam.name: points[seam.a] for seam in pair(all_sides, form.seam_lines)}
