@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 from seatlook import mesh
 from seatlook.errors import InputWarning, SeatlookError
 from seatlook.flattening import flatten
-from seatlook.flattening.dirichlet import dirichlet_map
 from seatlook.flattening.face_map import area_ratios, gradient_of, largest_step, stretches
 from seatlook.flattening.relax import flatten_patch
-from seatlook.flattening.start import conformal_map, tutte_map, unfolded_start
+from seatlook.flattening.start import conformal_map, dirichlet_map, tutte_map, unfolded_start
 from support.curved_panels import box, cone, cup, half_ellipsoid, lid, one_panel
 from support.fabrics import isotropic
 from support.rolls import rolled, sheet

@@ -10,7 +10,8 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import dijkstra
 
 from seatlook import mesh
-from seatlook.flattening.face_map import strains_by_grain, stretches
+from seatlook.flattening.fabric_sheet import strains_by_grain
+from seatlook.flattening.face_map import stretches
 from seatlook.flattening.surface import Patch, millimetres
 from seatlook.model import Curve, Fabric, FloatArray, IntArray
 

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
-import scipy.sparse as sp
 
-from seatlook.model import Curve, Fabric, FloatArray
-
-Gradient = tuple[sp.csr_array, sp.csr_array]
-Rows = tuple[list[FloatArray], list[list[sp.csr_array]]]
+from seatlook.flattening.face_map import Gradient, gradient_of
+from seatlook.model import Curve, Fabric, FloatArray, IntArray
 
 _TINY = 1e-12  # strain below which a curve is its first stiffness
+_STEP = 1e-6  # of F, by which the curvature is taken as a difference of slopes
+
+
+def strains_by_grain(vertices: FloatArray, faces: IntArray, flat: FloatArray) -> FloatArray:
+    """Return Green strains (m, 3) of the map from flat to space: warp, weft, angle 2 E12."""
+    return grain_strain(flat, gradient_of(vertices, faces))
 
 
 def grain_strain(x: FloatArray, gradient: Gradient) -> FloatArray:
@@ -21,14 +26,7 @@ def grain_strain(x: FloatArray, gradient: Gradient) -> FloatArray:
     x : (n, 2) [m]     flat positions, warp along the second axis
     gradient : derivatives along two axes of each face on the form
     """
-    stretched = _squared(_inverse(x, gradient))
-    return np.column_stack(
-        [
-            0.5 * (stretched[:, 1, 1] - 1.0),
-            0.5 * (stretched[:, 0, 0] - 1.0),
-            stretched[:, 0, 1],
-        ]
-    )
+    return _strain(_squared(_inverse(gradient.at(x))))
 
 
 def fabric_energy(strain: FloatArray, fabric: Fabric) -> FloatArray:
@@ -50,37 +48,52 @@ def fabric_energy(strain: FloatArray, fabric: Fabric) -> FloatArray:
     return np.asarray(0.5 * (a**2 + 2 * _coupling(fabric) * a * b + b**2 + c**2))
 
 
-def fabric_rows(x: FloatArray, gradient: Gradient, root: FloatArray, fabric: Fabric) -> Rows:
-    """Residuals (3 of (m,)), whose squares add up to twice the energy, and their derivatives.
+@dataclass(frozen=True, slots=True)
+class FabricLaw:
+    """The fabric's energy by F, in units of its mean stiffness: it weighs as an isotropic sheet."""
 
-    In units of the fabric's mean stiffness, so that they weigh as those of an isotropic sheet do.
-    ``root`` (m,) is the square root of the faces' area. The derivatives are operators on x and y.
-    """
-    inverse = _inverse(x, gradient)
-    squared = _squared(inverse)
-    along = [combined(gradient, inverse[:, 0, b], inverse[:, 1, b]) for b in (0, 1)]
-    changes = [
-        [-_scaled(along[1], squared[:, 1, a]) for a in (0, 1)],
-        [-_scaled(along[0], squared[:, 0, a]) for a in (0, 1)],
-        [-combined((along[1], along[0]), squared[:, 0, a], squared[:, 1, a]) for a in (0, 1)],
-    ]
-    mean = np.sqrt(np.sqrt(fabric.warp.stiffness[0] * fabric.weft.stiffness[0]))
-    parts = _roots(grain_strain(x, gradient), fabric)
-    share = _coupling(fabric)
-    values = [root * value / mean for value, _ in parts]
-    blocks = [
-        [_scaled(change, root * slope / mean) for change in pair]
-        for pair, (_, slope) in zip(changes, parts, strict=True)
-    ]
-    (a, b, c), (of_a, of_b, of_c) = values, blocks
-    rest = np.sqrt(1.0 - share**2)
-    first = [sp.csr_array(p + share * q) for p, q in zip(of_a, of_b, strict=True)]
-    return [a + share * b, rest * b, c], [first, [rest * q for q in of_b], of_c]
+    fabric: Fabric
+
+    def energy(self, F: FloatArray) -> FloatArray:
+        """Return the energy (m,)."""
+        strain = _strain(_squared(_inverse(F)))
+        return fabric_energy(strain, self.fabric) / self._mean
+
+    def derivatives(self, F: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the slope (m, 2, 2), axes (m, 4, 4) of its differences, and their sizes (m, 4)."""
+        curvature = np.empty((len(F), 4, 4))
+        for k in range(4):
+            step = np.zeros((2, 2))
+            step.flat[k] = _STEP
+            change = self._slope(F + step) - self._slope(F - step)
+            curvature[:, k] = change.reshape(-1, 4) / (2 * _STEP)
+        value, mode = np.linalg.eigh((curvature + curvature.transpose(0, 2, 1)) / 2)
+        return self._slope(F), mode.transpose(0, 2, 1), value
+
+    @property
+    def _mean(self) -> float:
+        return float(np.sqrt(self.fabric.warp.stiffness[0] * self.fabric.weft.stiffness[0]))
+
+    def _slope(self, F: FloatArray) -> FloatArray:
+        inverse = _inverse(F)
+        squared = _squared(inverse)
+        (a, of_a), (b, of_b), (c, of_c) = _roots(_strain(squared), self.fabric)
+        share = _coupling(self.fabric)
+        stress = np.empty_like(F)
+        stress[:, 1, 1] = (a + share * b) * of_a / 2
+        stress[:, 0, 0] = (b + share * a) * of_b / 2
+        stress[:, 0, 1] = stress[:, 1, 0] = c * of_c / 2
+        return -2 / self._mean * squared @ stress @ inverse.transpose(0, 2, 1)
 
 
-def combined(pair: Gradient, a: FloatArray, b: FloatArray) -> sp.csr_array:
-    """Return the derivatives along two axes, weighted by (m,) each and added."""
-    return sp.csr_array(_scaled(pair[0], a) + _scaled(pair[1], b))
+def _strain(stretched: FloatArray) -> FloatArray:
+    return np.column_stack(
+        [
+            0.5 * (stretched[:, 1, 1] - 1.0),
+            0.5 * (stretched[:, 0, 0] - 1.0),
+            stretched[:, 0, 1],
+        ]
+    )
 
 
 def _roots(strain: FloatArray, fabric: Fabric) -> list[tuple[FloatArray, FloatArray]]:
@@ -110,14 +123,10 @@ def _coupling(fabric: Fabric) -> float:
     return float(fabric.poisson * np.sqrt(ratio))
 
 
-def _inverse(x: FloatArray, gradient: Gradient) -> FloatArray:
+def _inverse(F: FloatArray) -> FloatArray:
     """Map (m, 2, 2) from the plane back to each face's axes."""
-    return np.linalg.inv(np.stack([g @ x for g in gradient], axis=2))
+    return np.asarray(np.linalg.inv(F), dtype=np.float64)
 
 
 def _squared(inverse: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("mka,mkb->mab", inverse, inverse))
-
-
-def _scaled(operator: sp.csr_array, rows: FloatArray) -> sp.csr_array:
-    return sp.csr_array(sp.diags(rows) @ operator)
+    return np.asarray(inverse.transpose(0, 2, 1) @ inverse)

@@ -2,18 +2,48 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.sparse as sp
 
-from seatlook.flattening.fabric_sheet import Gradient, grain_strain
 from seatlook.mesh import face_normals
 from seatlook.model import FloatArray, IntArray
 
 _MARGIN = 0.8  # of the way to the first face without area, that a step may go
 
 
+@dataclass(frozen=True, slots=True)
+class Gradient:
+    """Derivatives of what is linear in each face, along two axes of the face.
+
+    Parameters
+    ----------
+    faces : (m, 3) int64
+    slopes : (m, 3, 2) [1/m]   of the function that is 1 at one corner and 0 at the others
+    """
+
+    faces: IntArray
+    slopes: FloatArray
+
+    def at(self, x: FloatArray) -> FloatArray:
+        """Return F (m, 2, 2) of the map of vertices to positions (n, 2) in the plane."""
+        corners = x[self.faces].transpose(0, 2, 1)
+        return np.asarray(corners @ self.slopes)
+
+    def operators(self, n: int) -> tuple[sp.csr_array, sp.csr_array]:
+        """Return the derivatives as matrices (m, n)."""
+        rows = np.repeat(np.arange(len(self.faces)), 3)
+        shape = (len(self.faces), n)
+        x, y = (
+            sp.csr_array((self.slopes[:, :, k].ravel(), (rows, self.faces.ravel())), shape=shape)
+            for k in (0, 1)
+        )
+        return x, y
+
+
 def gradient_of(vertices: FloatArray, faces: IntArray) -> Gradient:
-    """Operators (m, n) for the derivative along each face's own two axes."""
+    """Derivatives along each face's own two axes: its first edge, and across it."""
     p = vertices[faces]
     u, v = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     axes = face_axes(vertices, faces)
@@ -24,11 +54,7 @@ def gradient_of(vertices: FloatArray, faces: IntArray) -> Gradient:
     dx = np.column_stack([zero, 1 / length, zero])
     dy = np.column_stack([zero, -vx / (length * vy), 1 / vy])
     dx[:, 0], dy[:, 0] = -dx.sum(axis=1), -dy.sum(axis=1)
-    rows = np.repeat(np.arange(len(faces)), 3)
-    shape = (len(faces), len(vertices))
-    return tuple(  # type: ignore[return-value]
-        sp.csr_array((d.ravel(), (rows, faces.ravel())), shape=shape) for d in (dx, dy)
-    )
+    return Gradient(faces, np.stack([dx, dy], axis=2))
 
 
 def face_axes(vertices: FloatArray, faces: IntArray) -> FloatArray:
@@ -41,31 +67,22 @@ def face_axes(vertices: FloatArray, faces: IntArray) -> FloatArray:
 def grown(gradient: Gradient, growth: FloatArray, axes: FloatArray) -> Gradient:
     """Derivatives with respect to lengths after growth: strain counts from the grown shape."""
     inverse = np.linalg.inv(np.einsum("amd,mde,bme->mab", axes, growth, axes))
-    gx, gy = gradient
-    return tuple(
-        (sp.diags(inverse[:, 0, k]) @ gx + sp.diags(inverse[:, 1, k]) @ gy).tocsr() for k in (0, 1)
-    )
-
-
-def deformation(x: FloatArray, gradient: Gradient) -> FloatArray:
-    """Return F (m, 2, 2) of the map from space to the plane."""
-    return np.stack([g @ x for g in gradient], axis=2)
+    return Gradient(gradient.faces, gradient.slopes @ inverse)
 
 
 def stretches(vertices: FloatArray, faces: IntArray, flat: FloatArray) -> FloatArray:
     """Return the principal stretches (m, 2), small one first, of the map from flat to space."""
-    F = deformation(flat, gradient_of(vertices, faces))
+    F = gradient_of(vertices, faces).at(flat)
     return np.asarray(1 / np.linalg.svd(F, compute_uv=False))
-
-
-def strains_by_grain(vertices: FloatArray, faces: IntArray, flat: FloatArray) -> FloatArray:
-    """Return Green strains (m, 3) of the map from flat to space: warp, weft, angle 2 E12."""
-    return grain_strain(flat, gradient_of(vertices, faces))
 
 
 def area_ratios(x: FloatArray, gradient: Gradient) -> FloatArray:
     """Return each face's area (m,) in the plane over that in space, below 0 where it is turned."""
-    F = deformation(x, gradient)
+    return determinants(gradient.at(x))
+
+
+def determinants(F: FloatArray) -> FloatArray:
+    """Return the determinant (m,) of matrices (m, 2, 2)."""
     return np.asarray(F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0])
 
 
@@ -75,8 +92,8 @@ def largest_step(x: FloatArray, step: FloatArray, gradient: Gradient) -> float:
     The area of a face is quadratic in the fraction; its smallest root above 0 is where the face
     has no area. A margin is kept from it.
     """
-    at, change = deformation(x, gradient), deformation(step, gradient)
-    a, c = np.linalg.det(change), np.linalg.det(at)
+    at, change = gradient.at(x), gradient.at(step)
+    a, c = determinants(change), determinants(at)
     b = (
         at[:, 0, 0] * change[:, 1, 1]
         + change[:, 0, 0] * at[:, 1, 1]

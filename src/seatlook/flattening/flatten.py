@@ -13,8 +13,8 @@ import numpy as np
 from seatlook import mesh
 from seatlook.errors import InputError, InputWarning, Problem, SeatlookError, did_you_mean
 from seatlook.flattening.excess import Excess, excess_of
-from seatlook.flattening.fabric_sheet import fabric_energy
-from seatlook.flattening.face_map import strains_by_grain, stretches
+from seatlook.flattening.fabric_sheet import fabric_energy, strains_by_grain
+from seatlook.flattening.face_map import stretches
 from seatlook.flattening.lengths import agreed_ratios, relax_panel
 from seatlook.flattening.pattern import pair, sewing_pattern
 from seatlook.flattening.placement import place

@@ -119,13 +119,17 @@ def sewing_pattern(
 def _check_outline(patch: Patch, outline: FloatArray) -> None:
     """Refuse a flat outline that crosses itself: it cannot be cut from one piece."""
     pieces = shapely.linestrings(np.stack([outline, np.roll(outline, -1, axis=0)], axis=1))
-    crossing, _ = shapely.STRtree(pieces).query(pieces, predicate="crosses")
-    if len(crossing):
-        place = 1e3 * patch.vertices[patch.boundary[crossing[0]]]
-        raise SeatlookError(
-            f"panel {patch.name}: its flat outline crosses itself near {place.round(1)} mm: cut it"
-            " into two panels there"
-        )
+    first, second = shapely.STRtree(pieces).query(pieces, predicate="crosses")
+    ends = shapely.points(outline)
+    for i, j in zip(first.tolist(), second.tolist(), strict=True):
+        # Pieces that touch in a corner cross by rounding.
+        near = shapely.distance(pieces[j], ends[[i, (i + 1) % len(ends)]])
+        if near.min() > _ROUNDING:
+            place = 1e3 * patch.vertices[patch.boundary[i]]
+            raise SeatlookError(
+                f"panel {patch.name}: its flat outline crosses itself near {place.round(1)} mm: "
+                "cut it into two panels there"
+            )
 
 
 def pair(

@@ -1,22 +1,15 @@
-"""Flattening one patch: least elastic energy by Gauss-Newton steps that turn no face over."""
+"""Flattening one patch: least elastic energy, with edges of given length and darts open."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from seatlook.errors import SeatlookError
-from seatlook.flattening.fabric_sheet import Gradient, Rows, combined, fabric_rows
-from seatlook.flattening.face_map import (
-    deformation,
-    face_axes,
-    gradient_of,
-    grown,
-    largest_step,
-)
+from seatlook.flattening.fabric_sheet import FabricLaw
+from seatlook.flattening.face_map import face_axes, gradient_of, grown
+from seatlook.flattening.newton import Law, Separable, Tie, minimise
 from seatlook.flattening.start import unfolded_start
 from seatlook.mesh import face_areas
 from seatlook.model import Fabric, FloatArray, IntArray
@@ -25,9 +18,11 @@ _MAX_STEPS = 400
 _CONVERGED = 1e-7  # [m] that the last step moved at most
 _SETTLED = 1e-8  # share of the energy that the last step won
 _STRAINLESS = 1e-16  # mean squared strain that is none
-_SMALLEST_SCALE = 1e-4
 # Weight of a held edge length against the faces beside it: 1e4 holds lengths to about 1e-6.
 _HOLD = 1e4
+# Where lengths are far from those asked for, they are drawn there by and by: at once, a border that
+# is to become much shorter crumples.
+_FAR, _FAR_HOLDS, _FAR_SETTLED = 0.03, (1.0, 1e2), 1e-3
 # Green's strain gives way far from 0. Faces beyond this stretch, where the form strains the panel
 # by a quarter, resist more, the weight times as much.
 _BOUND, _RESISTANCE = 0.8, 2.0
@@ -54,6 +49,21 @@ class Openings:
     vertices: IntArray
     across: FloatArray
     least: FloatArray
+
+    def energy(self, span: FloatArray) -> FloatArray:
+        """Return what it costs (k,) that sides lie over each other."""
+        return np.asarray(_HOLD * self._missing(span) ** 2 / 2)
+
+    def derivatives(self, span: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return slope (k, 2) and curvature (k, 2, 2) of the energy; none of it is below 0."""
+        missing = self._missing(span)
+        square = self.across[:, :, None] * self.across[:, None, :]
+        active = np.where(missing > 0, _HOLD, 0.0)
+        stiff = active[:, None, None] * square
+        return -_HOLD * missing[:, None] * self.across, stiff, np.zeros_like(stiff)
+
+    def _missing(self, span: FloatArray) -> FloatArray:
+        return np.asarray(np.maximum(self.least - (span * self.across).sum(axis=1), 0.0))
 
 
 def flatten_patch(
@@ -89,178 +99,132 @@ def flatten_patch(
     SeatlookError
         The mesh has faces without area, or the steps do not converge; says where.
     """
-    held = held or HeldEdges(vertices=np.zeros((0, 2), np.int64), length=np.zeros(0))
     gradient = gradient_of(vertices, faces)
     if growth is not None:
         gradient = grown(gradient, growth, face_axes(vertices, faces))
     x = unfolded_start(vertices, faces) if start is None else start
     area = face_areas(vertices, faces)
-    energy = _Energy(gradient, area, held, openings, fabric, _chord(x))
-    value, residual, jacobian = energy.at(x)
-    for _ in range(_MAX_STEPS):
-        step = _step(residual, jacobian)
-        scale = largest_step(x, step, gradient)
-        while True:
-            trial = x + scale * step
-            new, residual, jacobian = energy.at(trial)
-            if new <= value or scale < _SMALLEST_SCALE:
-                break
-            scale /= 2
-        if new > value:
-            return x  # rounding hides what a smaller step would win
-        x, won, value = trial, value - new, new
-        if scale * np.abs(step).max() < _CONVERGED or won < energy.negligible(value):
-            return x
-    worst = 1e3 * vertices[np.linalg.norm(step, axis=1).argmax()]
+    laws: list[Law] = [_SHEET] if fabric is None else [FabricLaw(fabric), _CRUSHED]
+    ties: list[Tie] = [] if openings is None else [openings]
+    if fabric is not None:
+        ties.append(_chord(x, float(area.sum())))
+    nothing = _STRAINLESS * float(area.sum())
+    left = None
+    for hold, settled in _holds(x, held):
+        lengths = [] if held is None else [_lengths(held, hold * float(area.mean()))]
+        x, left = minimise(
+            x, gradient, area, laws, [*ties, *lengths], steps=_MAX_STEPS,
+            enough=lambda won, value, moved, share=settled: (  # type: ignore[misc]
+                moved < _CONVERGED or won < share * value + nothing
+            ),
+        )  # fmt: skip
+    if left is None:
+        return x
+    worst = 1e3 * vertices[np.linalg.norm(left, axis=1).argmax()]
     raise SeatlookError(
         f"flattening does not converge in {_MAX_STEPS} steps and still moves near "
         f"{worst.round(1)} mm"
     )
 
 
-def _step(residual: FloatArray, jacobian: sp.csc_array) -> FloatArray:
-    """Return the Gauss-Newton step (n, 2)."""
-    normal = (jacobian.T @ jacobian).tocsc()
-    # Rigid motions cost nothing: a trace of damping makes the matrix regular.
-    damping = sp.identity(normal.shape[0], format="csc") * (1e-9 * normal.diagonal().mean())
-    return np.asarray(-splu(normal + damping).solve(jacobian.T @ residual).reshape(-1, 2))
+def _holds(x: FloatArray, held: HeldEdges | None) -> list[tuple[float, float]]:
+    """Return how much lengths are held, one time after the other, and when each is settled."""
+    if held is None or len(held.length) == 0:
+        return [(_HOLD, _SETTLED)]
+    span = x[held.vertices[:, 1]] - x[held.vertices[:, 0]]
+    off = np.abs(np.linalg.norm(span, axis=1) / held.length - 1).max()
+    softly = [(hold, _FAR_SETTLED) for hold in _FAR_HOLDS] if off > _FAR else []
+    return [*softly, (_HOLD, _SETTLED)]
+
+
+def _sheet(s: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Half the square of Green's strain, and of ``share / s - 1`` for stretches below the share."""
+    beyond = np.maximum(_BOUND / s - 1, 0.0)
+    slope = np.where(beyond > 0, -_BOUND / s**2, 0.0)
+    more = np.where(beyond > 0, 2 * _BOUND / s**3, 0.0)
+    green = ((s**2 - 1) ** 2 / 8, (s**2 - 1) * s / 2, (3 * s**2 - 1) / 2)
+    value, first, second = map(np.add, green, _squares(beyond, slope, more))
+    return value, first, second
+
+
+def _crushed(s: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Half the square of ``share s - 1``.
+
+    A fabric's strain counts the other way, from the plane to the form: it resists crushed faces
+    without bound, and gives way where there is much too much cloth.
+    """
+    beyond = np.maximum(_BOUND * s - 1, 0.0)
+    return _squares(beyond, np.where(beyond > 0, _BOUND, 0.0), np.zeros_like(s))
+
+
+def _squares(
+    beyond: FloatArray, slope: FloatArray, curvature: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    weight = _RESISTANCE**2
+    return (
+        weight * beyond**2 / 2,
+        weight * beyond * slope,
+        weight * (slope**2 + beyond * curvature),
+    )
+
+
+_SHEET, _CRUSHED = Separable(_sheet), Separable(_crushed)
+
+
+@dataclass(frozen=True, slots=True)
+class _Lengths:
+    """Edges held at their length."""
+
+    held: HeldEdges
+    weight: FloatArray
+
+    @property
+    def vertices(self) -> IntArray:
+        return self.held.vertices
+
+    def energy(self, span: FloatArray) -> FloatArray:
+        return self.weight * self._off(span) ** 2 / 2
+
+    def derivatives(self, span: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        off, along = self._off(span), span / self.held.length[:, None] ** 2
+        spread = (self.weight * off / self.held.length**2)[:, None, None] * np.eye(2)
+        stiff = self.weight[:, None, None] * along[:, :, None] * along[:, None, :]
+        return (
+            (self.weight * off)[:, None] * along,
+            stiff + np.maximum(spread, 0.0),
+            np.minimum(spread, 0.0),
+        )
+
+    def _off(self, span: FloatArray) -> FloatArray:
+        return np.asarray(((span**2).sum(axis=1) / self.held.length**2 - 1) / 2)
+
+
+def _lengths(held: HeldEdges, weight: float) -> _Lengths:
+    """Hold edges by their length: a line is equally stiff all along, however it is divided."""
+    mean = held.length.mean() if len(held.length) else 1.0
+    return _Lengths(held, weight * held.length / mean)
 
 
 @dataclass(frozen=True, slots=True)
 class _Chord:
-    """Two vertices far apart and the unit vector across the line between them."""
+    """Two vertices far apart; the line between them keeps its direction, and so the grain."""
 
-    ends: IntArray
+    vertices: IntArray
     across: FloatArray
-    length: float
+    weight: float
+
+    def energy(self, span: FloatArray) -> FloatArray:
+        return np.asarray(self.weight * (span @ self.across) ** 2 / 2)
+
+    def derivatives(self, span: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        stiff = self.weight * np.outer(self.across, self.across)[None]
+        return span @ stiff[0], stiff, np.zeros_like(stiff)
 
 
-def _chord(x: FloatArray) -> _Chord:
+def _chord(x: FloatArray, area: float) -> _Chord:
     first = int(np.linalg.norm(x - x.mean(axis=0), axis=1).argmax())
     second = int(np.linalg.norm(x - x[first], axis=1).argmax())
     along = x[second] - x[first]
     length = float(np.linalg.norm(along))
-    return _Chord(np.array([first, second]), np.array([-along[1], along[0]]) / length, length)
-
-
-@dataclass(frozen=True, slots=True)
-class _Energy:
-    """What is minimised: the sheet's strain energy, held lengths, a fabric's direction."""
-
-    gradient: Gradient
-    area: FloatArray
-    held: HeldEdges
-    openings: Openings | None
-    fabric: Fabric | None
-    chord: _Chord
-
-    def at(self, x: FloatArray) -> tuple[float, FloatArray, sp.csc_array]:
-        """Return energy, residual and Jacobian with unknowns in the order x0 y0 x1 y1 ..."""
-        root = np.sqrt(self.area)
-        if self.fabric is None:
-            residual, blocks = _isotropic_rows(x, self.gradient, root)
-        else:
-            residual, blocks = fabric_rows(x, self.gradient, root, self.fabric)
-            turned, row = self._turned(x)
-            residual.append(turned)
-            blocks.append(row)
-        beyond, rows = _bounding_rows(x, self.gradient, root, fabric=self.fabric is not None)
-        lengths, held = _held_rows(x, self.held, self.area)
-        blocks += [*rows, held]
-        residual += [*beyond, lengths]
-        if self.openings is not None:
-            missing, row = _opening_rows(x, self.openings)
-            residual.append(missing)
-            blocks.append(row)
-        r = np.concatenate(residual)
-        by_axis = sp.vstack([sp.hstack(pair) for pair in blocks]).tocsc()
-        order = np.arange(2 * len(x)).reshape(2, -1).T.ravel()
-        return 0.5 * float(r @ r), r, by_axis[:, order]
-
-    def negligible(self, value: float) -> float:
-        """Return what a step may win at most where the energy has come to rest."""
-        return _SETTLED * value + _STRAINLESS * float(self.area.sum())
-
-    def _turned(self, x: FloatArray) -> tuple[FloatArray, list[sp.csr_array]]:
-        """How far the chord has turned; the grain would turn with it."""
-        chord, shape = self.chord, (1, len(x))
-        weight = np.sqrt(_HOLD * self.area.sum()) / chord.length
-        signs = weight * np.array([-1.0, 1.0])
-        row = [
-            sp.csr_array((signs * c, (np.zeros(2, dtype=int), chord.ends)), shape=shape)
-            for c in chord.across
-        ]
-        return weight * np.diff(x[chord.ends], axis=0) @ chord.across, row
-
-
-def _isotropic_rows(x: FloatArray, gradient: Gradient, root: FloatArray) -> Rows:
-    F = deformation(x, gradient)
-    gx, gy = gradient
-    fx, fy = F[:, :, 0], F[:, :, 1]
-    residual = [
-        root * ((fx**2).sum(axis=1) - 1) / 2,
-        root * ((fy**2).sum(axis=1) - 1) / 2,
-        root * (fx * fy).sum(axis=1) / np.sqrt(2),
-    ]
-    blocks = [
-        [sp.csr_array(sp.diags(root * fx[:, k]) @ gx) for k in (0, 1)],
-        [sp.csr_array(sp.diags(root * fy[:, k]) @ gy) for k in (0, 1)],
-        [
-            sp.csr_array(
-                sp.diags(root / np.sqrt(2)) @ (sp.diags(fx[:, k]) @ gy + sp.diags(fy[:, k]) @ gx)
-            )
-            for k in (0, 1)
-        ],
-    ]
-    return residual, blocks
-
-
-def _bounding_rows(x: FloatArray, gradient: Gradient, root: FloatArray, *, fabric: bool) -> Rows:
-    """Residuals ``share / s - 1`` against stretches s of the plane below the share.
-
-    A fabric's strain counts the other way, from the plane to the form: it resists crushed faces
-    without bound, and gives way where there is much too much cloth. Therefore ``share s - 1``.
-    """
-    u, s, vt = np.linalg.svd(deformation(x, gradient))
-    weight = _RESISTANCE * root
-    blocks, values = [], []
-    for k in (0, 1):
-        size = s[:, k] if fabric else 1 / s[:, k]
-        beyond = np.maximum(_BOUND * size - 1, 0.0)
-        values.append(weight * beyond)
-        slope = weight * _BOUND * np.where(beyond > 0, 1.0 if fabric else -(size**2), 0.0)
-        along = slope[:, None] * vt[:, k]
-        blocks.append([combined(gradient, *(u[:, i, k, None] * along).T) for i in (0, 1)])
-    return values, blocks
-
-
-def _held_rows(
-    x: FloatArray, held: HeldEdges, area: FloatArray
-) -> tuple[FloatArray, list[sp.csr_array]]:
-    span = x[held.vertices[:, 1]] - x[held.vertices[:, 0]]
-    root = np.sqrt(_HOLD * area.mean()) / held.length**2
-    rows = np.repeat(np.arange(len(span)), 2)
-    ends = held.vertices.ravel()
-    signs = np.tile([-1.0, 1.0], len(span))
-    return root * ((span**2).sum(axis=1) - held.length**2) / 2, [
-        sp.csr_array(
-            (signs * np.repeat(root * span[:, k], 2), (rows, ends)), shape=(len(span), len(x))
-        )
-        for k in (0, 1)
-    ]
-
-
-def _opening_rows(x: FloatArray, openings: Openings) -> tuple[FloatArray, list[sp.csr_array]]:
-    """Residuals that are above 0 where the sides of a dart lie over each other."""
-    ends, across = openings.vertices, openings.across
-    open_by = ((x[ends[:, 1]] - x[ends[:, 0]]) * across).sum(axis=1)
-    weight = np.sqrt(_HOLD)
-    missing = np.maximum(openings.least - open_by, 0.0)
-    signs = weight * np.where(missing > 0, 1.0, 0.0)[:, None] * [1.0, -1.0]
-    rows = np.repeat(np.arange(len(ends)), 2)
-    return weight * missing, [
-        sp.csr_array(
-            ((signs * across[:, k, None]).ravel(), (rows, ends.ravel())), shape=(len(ends), len(x))
-        )
-        for k in (0, 1)
-    ]
+    across = np.array([-along[1], along[0]]) / length
+    return _Chord(np.array([[first, second]]), across, _HOLD * area / length**2)

@@ -7,14 +7,16 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from seatlook.errors import SeatlookError
-from seatlook.flattening.dirichlet import dirichlet_map
-from seatlook.flattening.face_map import area_ratios, gradient_of
+from seatlook.flattening.face_map import Gradient, area_ratios, gradient_of
+from seatlook.flattening.newton import Separable, minimise
 from seatlook.mesh import angles, boundary_loops, face_areas, segment_lengths
 from seatlook.model import FloatArray, IntArray
 
 # Area ratio below which a face of the conformal map is too small to start from: steps of the
 # fabric's energy would crush it rather than let it grow.
 _CRUSHED = 0.5
+_MAX_STEPS = 60
+_CONVERGED = 1e-4  # share of the energy that the last step won; it is a start only
 
 
 def unfolded_start(vertices: FloatArray, faces: IntArray) -> FloatArray:
@@ -42,12 +44,33 @@ def unfolded_start(vertices: FloatArray, faces: IntArray) -> FloatArray:
     return dirichlet_map(x, gradient, face_areas(vertices, faces))
 
 
+def dirichlet_map(x: FloatArray, gradient: Gradient, area: FloatArray) -> FloatArray:
+    """Return the flat positions (n, 2) of least ``sum A (|F|^2 + |F^-1|^2) / 2``.
+
+    The energy is without bound where a face loses its area.
+
+    Parameters
+    ----------
+    x : (n, 2) [m]   a start without a turned face
+    gradient : derivatives along two axes of each face; area : (m,) [m2]
+    """
+    F = gradient.at(x)
+    square = (F**2).sum(axis=(1, 2))
+    inverse = square / np.linalg.det(F) ** 2
+    x = x * float((area @ inverse) / (area @ square)) ** 0.25  # the size of least energy
+    law = Separable(lambda s: ((s**2 + s**-2) / 2, s - s**-3, 1 + 3 * s**-4))
+    return minimise(
+        x, gradient, area, [law], steps=_MAX_STEPS,
+        enough=lambda won, value, _: won < _CONVERGED * value,
+    )[0]  # fmt: skip
+
+
 def conformal_map(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Return the least-squares conformal map (n, 2) of a disk, in true size.
 
     Lévy, Petitjean, Ray, Maillot 2002, with the two vertices farthest apart pinned.
     """
-    gx, gy = gradient_of(vertices, faces)
+    gx, gy = gradient_of(vertices, faces).operators(len(vertices))
     weight = sp.diags(np.sqrt(face_areas(vertices, faces)))
     # Cauchy-Riemann: grad v is grad u turned by 90 degrees.
     rows = sp.csc_array(
