@@ -1,12 +1,19 @@
+import re
+
 import numpy as np
 import pytest
 import trimesh
 
+from seatlook.errors import InputWarning
 from seatlook.io.curves import read_curves, write_curves
 from seatlook.io.material import read_foam_material
+from seatlook.io.surface.axes import METRES
 from seatlook.io.surface.design import GroupedMesh, read_surface, write_obj, write_surface
 from seatlook.io.surface.foam import read_foam, read_foam_surface
-from seatlook.mesh import face_vectors
+from seatlook.io.surface.mended import mend_file
+from seatlook.mesh import face_areas, face_vectors
+from seatlook.mesh.mending.mend import Mending
+from support.rough_surfaces import scan, without
 
 FOAM = read_foam_material("foam-seat")
 
@@ -132,20 +139,20 @@ def test_surface_not_closed(tmp_path, problems):
     write_obj(mesh.vertices, mesh.faces[1:], tmp_path / "foam.obj")
     (message,) = problems(read_foam, tmp_path / "foam.obj", material=FOAM, unit="mm")
     assert message == (
-        "foam.obj: surface: got 3 edges without exactly two faces, the first at "
-        "(-240, -180, 30) mm, expected a closed surface"
+        "foam.obj: surface: got 3 open edges round 1 holes, the largest 912 mm round at "
+        "(-240, -46.6667, 46.6667) mm, expected a closed surface "
+        "(close fills the holes, thicken_mm gives an open shell a thickness)"
     )
 
 
-def test_one_face_turned(tmp_path, problems):
+def test_one_face_turned(tmp_path):
     mesh = tube()
     faces = np.array(mesh.faces)
     faces[3] = faces[3, ::-1]
     write_obj(mesh.vertices, faces, tmp_path / "foam.obj")
-    assert problems(read_foam, tmp_path / "foam.obj", material=FOAM, unit="mm") == [
-        "foam.obj: surface: got neighbouring faces that look to different sides, "
-        "expected all faces outward"
-    ]
+    with pytest.warns(InputWarning, match=r"1 faces turned to the side of .* at \(.*\) mm"):
+        foam = read_foam(tmp_path / "foam.obj", material=FOAM, unit="mm")
+    assert volume(foam) == pytest.approx(0.5 * 0.4 * 0.1)
 
 
 def test_two_bodies(tmp_path, problems):
@@ -153,8 +160,56 @@ def test_two_bodies(tmp_path, problems):
     b.apply_translation([0.6, 0, 0])
     write_obj(*_joined(a, b), tmp_path / "foam.obj")
     assert problems(read_foam, tmp_path / "foam.obj", material=FOAM, unit="mm") == [
-        "foam.obj: surface: got 2 bodies, expected one body"
+        "foam.obj: surface: got 2 bodies (1: 20 l at (10, 20, 30) mm; 2: 20 l at (610, 20, 30) mm),"
+        " expected one body (unite makes one of them, body = 1 takes the first)"
     ]
+
+
+@pytest.mark.parametrize(("unit", "up"), [("inch", "y"), ("cm", "z")])
+def test_places_are_those_of_the_file(tmp_path, problems, unit, up):
+    mesh = tube()
+    vertices = mesh.vertices / METRES[unit]
+    if up == "y":
+        vertices = vertices[:, [0, 2, 1]] * [1, 1, -1]
+    trimesh.Trimesh(vertices, mesh.faces[1:], process=False).export(tmp_path / "foam.ply")
+    (message,) = problems(read_foam_surface, tmp_path / "foam.ply", unit=unit, up=up)
+    x, y, z = (float(v) for v in re.search(r"at \((.*)\) " + unit, message)[1].split(","))
+    rim = np.unique(mesh.faces[0])
+    assert np.array([x, y, z]) == pytest.approx(vertices[rim].mean(axis=0), abs=1e-3)
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".glb", ".stl"])
+def test_a_scan_becomes_a_foam_file_that_reads_as_it_is(tmp_path, suffix):
+    vertices, faces = scan(5)
+    trimesh.Trimesh(vertices, faces, process=False).export(tmp_path / f"scan{suffix}")
+    choices = Mending(close=True, smooth=0.015)
+    kept = {"unit": "m", "up": "z"}
+    mended = mend_file(tmp_path / f"scan{suffix}", tmp_path / "foam.obj", mending=choices, **kept)
+    assert len(mended.mended) >= 5
+    again = read_foam_surface(tmp_path / "foam.obj", unit="mm")
+    assert again.mended == ()
+    assert len(again.faces) == len(mended.faces)
+    with pytest.warns(InputWarning, match="loose specks dropped"):
+        foam = read_foam(tmp_path / f"scan{suffix}", material=FOAM, mending=choices, **kept)
+    assert np.array_equal(foam.faces, mended.faces)
+
+
+def test_a_design_surface_keeps_its_panels_when_it_is_mended(tmp_path):
+    x, y = (a.ravel() for a in np.meshgrid(np.linspace(0, 400, 41), np.linspace(0, 300, 31)))
+    i = np.arange(30)[:, None] * 41 + np.arange(40)
+    faces = np.concatenate(
+        [np.stack([i, i + 1, i + 42], -1), np.stack([i, i + 42, i + 41], -1)]
+    ).reshape(-1, 3)
+    vertices = 1e-3 * np.column_stack([x, y, 0 * x])
+    faces = without(vertices, faces, np.array([0.1, 0.15, 0]), 0.03)
+    panel = (vertices[faces].mean(axis=1)[:, 0] > 0.2).astype(np.int64)
+    write_surface(GroupedMesh(vertices, faces, panel, ("LEFT", "RIGHT")), tmp_path / "holed.obj")
+    mend_file(tmp_path / "holed.obj", tmp_path / "d.obj", sheet=True, mending=Mending(close=True))
+    drawn = read_surface(tmp_path / "d.obj")
+    areas = np.bincount(drawn.panel, face_areas(drawn.vertices, drawn.faces))
+    assert dict(zip(drawn.panel_names, areas, strict=True)) == pytest.approx(
+        {"LEFT": 0.06, "RIGHT": 0.06}
+    )
 
 
 def _joined(a, b):

@@ -10,6 +10,7 @@ from seatlook.cli import (
     _jury,
     _machine,
     _making,
+    _mend,
     _precision,
     _render,
     _score,
@@ -24,6 +25,7 @@ __all__ = ["app", "main", "run"]
 
 app.command(_demo.demo)
 app.command(_flatten.flatten)
+app.command(_mend.mend)
 app.command(_init.init)
 app.command(_check.check)
 app.command(_evaluate.evaluate)

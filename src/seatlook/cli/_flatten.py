@@ -7,6 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from seatlook.cli._mend import MendingOptions
 from seatlook.cli._options import Out
 from seatlook.cli._output import Json, note, table
 from seatlook.cli._shares import Shares, shares
@@ -25,6 +26,7 @@ def flatten(
     out: Out,
     seam_lines: Path | None = None,
     foam: Path | None = None,
+    mending: MendingOptions | None = None,
     wires: Path | None = None,
     unit: Unit | None = None,
     up: Up | None = None,
@@ -102,7 +104,8 @@ def flatten(
         made, scene = flatten_scene(
             surface, foam, out, flattening=how,
             material=material or "leather-laminate", foam_material=foam_material, wires=wires,
-            foam_unit=unit, foam_up=up, name=surface.stem, force=force,
+            foam_unit=unit, foam_up=up,
+            foam_mending=(mending or MendingOptions()).choices(), name=surface.stem, force=force,
         )  # fmt: skip
         note(*scene.notes)
     note(f"pictures of the strain: {made.pictures[0].parent}")

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from seatlook.cli._mend import MendingOptions
 from seatlook.cli._output import Json, note, progress, table
 from seatlook.io.pattern.units import Units
 from seatlook.io.surface.axes import Unit, Up
@@ -20,6 +21,7 @@ def init(
     out: Annotated[Path, Parameter(help="Folder for the new scene.")],
     unit: Unit | None = None,
     up: Up | None = None,
+    mending: MendingOptions | None = None,
     material: str = "leather-laminate",
     foam_material: str = "foam-seat",
     seams: Path | None = None,
@@ -77,7 +79,8 @@ def init(
         show("lay out")
         first = start(
             pattern, foam, out,
-            unit=unit, up=up, material=material, foam_material=foam_material, seams=seams,
+            unit=unit, up=up, mending=(mending or MendingOptions()).choices(),
+            material=material, foam_material=foam_material, seams=seams,
             wires=wires, size=size, units=units, encoding=encoding, grain_deg=grain_deg, top=top,
             turn_deg=turn_deg, force=force,
         )  # fmt: skip

@@ -100,6 +100,9 @@ if TYPE_CHECKING:
     from seatlook.io.surface.foam import (
         read_foam_surface as read_foam_surface,
     )
+    from seatlook.io.surface.mended import (
+        mend_file as mend_file,
+    )
     from seatlook.io.table import (
         write_numbers as write_numbers,
     )
@@ -116,6 +119,7 @@ _PUBLIC: dict[str, str] = {
     "list_materials": "seatlook.io.material",
     "load_scene": "seatlook.io.scene.read",
     "materials_dir": "seatlook.io.material",
+    "mend_file": "seatlook.io.surface.mended",
     "read_curves": "seatlook.io.curves",
     "read_d3plot": "seatlook.io.lsdyna.d3plot.reader",
     "read_dxf": "seatlook.io.pattern.dxf",
@@ -152,6 +156,7 @@ __all__ = [
     "list_materials",
     "load_scene",
     "materials_dir",
+    "mend_file",
     "read_curves",
     "read_d3plot",
     "read_dxf",

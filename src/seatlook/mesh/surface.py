@@ -154,3 +154,18 @@ def hexagonal_bias(points: FloatArray, pairs: IntArray) -> float:
     along = points[pairs[:, 1]] - points[pairs[:, 0]]
     theta = np.arctan2(along[:, 1], along[:, 0])
     return float(np.abs(np.exp(6j * theta).mean()))
+
+
+def winding(point: FloatArray, triangles: FloatArray) -> float:
+    """Times triangles (m, 3, 3) wind around a point: solid angles (Van Oosterom, Strackee 1983)."""
+    a, b, c = (triangles - point).transpose(1, 0, 2)
+    la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+    dot = np.einsum
+    top = dot("ij,ij->i", a, np.cross(b, c))
+    bottom = (
+        la * lb * lc
+        + dot("ij,ij->i", a, b) * lc
+        + dot("ij,ij->i", b, c) * la
+        + dot("ij,ij->i", c, a) * lb
+    )
+    return float(np.arctan2(top, bottom).sum() / (2 * np.pi))

@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError
 from seatlook.mesh.kinematics import green_of_logarithmic, logarithmic_strain
+from seatlook.mesh.orientation import agree
 from seatlook.model import FloatArray, IntArray, Shells, ShellState, StrainMeasure, Strains
 from seatlook.wrinkle.equations import STRAIN_MEASURES
 from seatlook.wrinkle.jet import vertex_curvature
-from seatlook.wrinkle.orientation import agree
 
 StrainSource = Literal["strains", "shape", "strains and shape"]
 

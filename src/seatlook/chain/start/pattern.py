@@ -28,6 +28,7 @@ from seatlook.chain.start.scene_file import (
 from seatlook.errors import InputError
 from seatlook.io.pattern.units import Units
 from seatlook.io.surface.axes import Unit, Up
+from seatlook.mesh.mending.mend import AS_IT_IS, Mending
 from seatlook.model import FloatArray, Frame, Hook, Pattern
 
 SEAMS = "seams.toml"
@@ -37,7 +38,8 @@ _NEAREST_WIRE = 0.08  # m from a seam to the wire it may be hooked to
 class StartChoices(TypedDict, total=False):
     """How a first scene is made; all may be left out.
 
-    ``unit`` ("mm", "cm", "m", "inch") and ``up`` ("z", "y") of the foam's file; ``material`` and
+    ``unit`` ("mm", "cm", "m", "inch") and ``up`` ("z", "y") of the foam's file;
+    ``mending`` of its surface; ``material`` and
     ``foam_material``: supplied names or files; ``seams``: file taken instead of a guess; ``wires``:
     curves file of the wires in the foam; ``size``, ``units`` and ``encoding`` of the pattern, and
     ``grain_deg`` of its pieces without a grain line; ``top``: the panel on top, turned by
@@ -46,6 +48,7 @@ class StartChoices(TypedDict, total=False):
 
     unit: Unit | None
     up: Up | None
+    mending: Mending
     material: str
     foam_material: str
     seams: Path | None
@@ -105,6 +108,7 @@ def init(
         unit=choices.get("unit"),
         up=choices.get("up"),
         wires=choices.get("wires"),
+        mending=choices.get("mending", AS_IT_IS),
     )
     layout = lay_out(
         proposal.pattern,

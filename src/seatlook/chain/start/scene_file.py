@@ -14,6 +14,7 @@ from seatlook import io
 from seatlook.errors import InputError
 from seatlook.io.surface.axes import Axes, Unit, Up
 from seatlook.io.templates import write_template
+from seatlook.mesh.mending.mend import AS_IT_IS, Mending
 from seatlook.model import Fabric, FloatArray, Foam, FoamMaterial, Frame, Hook, Pose
 from seatlook.solver import foam_wavelength
 
@@ -35,6 +36,7 @@ class FoamFile:
     ----------
     axes : unit and vertical axis of the file
     material : name or file
+    mending : what is done to its surface
     body : the foam with its wires
     notes : sentences on its size, and on what was guessed
     """
@@ -42,12 +44,19 @@ class FoamFile:
     path: Path
     axes: Axes
     material: str
+    mending: Mending
     body: Foam
     notes: tuple[str, ...]
 
 
 def read_foam_file(
-    path: Path, material: str, *, unit: Unit | None, up: Up | None, wires: Path | None
+    path: Path,
+    material: str,
+    *,
+    unit: Unit | None,
+    up: Up | None,
+    wires: Path | None,
+    mending: Mending = AS_IT_IS,
 ) -> FoamFile:
     """Read the foam of a scene that is to be written.
 
@@ -57,12 +66,13 @@ def read_foam_file(
     wires : curves file with the wires in the foam, if there are any
     """
     filling = io.read_foam_material(material)
-    surface = io.read_foam_surface(path, unit=unit, up=up)
+    surface = io.read_foam_surface(path, unit=unit, up=up, mending=mending)
     curves = {} if wires is None else io.read_curves(wires)
     return FoamFile(
         path=path,
         axes=surface.axes,
         material=material,
+        mending=mending,
         body=Foam(
             vertices=surface.vertices,
             faces=surface.faces,
@@ -164,7 +174,10 @@ def _size_notes(path: Path, surface: io.FoamSurface, *, guessed: bool) -> tuple[
     """Say how large the foam is; one that stands on its edge is most often in other axes."""
     unit, up = surface.axes
     width, depth, height = (round(1e3 * v) for v in np.ptp(surface.vertices, axis=0))
-    notes = [f"foam: {width} mm wide, {depth} mm deep, {height} mm high"]
+    notes = [
+        f"foam: {m.number} {m.what} at {surface.axes.place(m.place)}" for m in surface.mended
+    ]
+    notes += [f"foam: {width} mm wide, {depth} mm deep, {height} mm high"]
     if guessed and unit != "mm":
         notes.insert(0, f"{path}: read in {unit}, by its format or size")
     if height > min(width, depth):

@@ -36,6 +36,7 @@ from seatlook.flattening.files import (
 from seatlook.flattening.pattern import pair
 from seatlook.flattening.surface import DesignSurface, sides
 from seatlook.io.surface.axes import Unit, Up
+from seatlook.mesh.mending.mend import AS_IT_IS, Mending
 from seatlook.model import FloatArray, Frame, Pose
 
 NEAREST_WIRE = 0.030  # m from a seam of the design to the wire it is hooked to
@@ -46,7 +47,8 @@ class SceneChoices(TypedDict, total=False):
 
     ``material`` of all panels but those in ``panels`` (panel -> material) and ``foam_material``:
     supplied names or files. ``wires``: curves file of the wires in the foam. ``foam_unit`` and
-    ``foam_up`` of the foam's file; by its format and size if not given. ``element_size_mm`` and
+    ``foam_up`` of the foam's file; by its format and size if not given. ``foam_mending`` of its
+    surface. ``element_size_mm`` and
     ``seed`` of the mesh; ``name``, ``textures``, ``bulbs`` (rigs) and ``remarks`` (comments at the
     top) of the scene. ``force``: write over a scene that is there.
     """
@@ -57,6 +59,7 @@ class SceneChoices(TypedDict, total=False):
     wires: Path | None
     foam_unit: Unit | None
     foam_up: Up | None
+    foam_mending: Mending
     element_size_mm: float | None
     seed: int
     name: str
@@ -134,6 +137,7 @@ def foam_file(foam: Path, **choices: Unpack[SceneChoices]) -> FoamFile:
         choices.get("foam_material", FOAM_MATERIAL),
         unit=choices.get("foam_unit"),
         up=choices.get("foam_up"),
+        mending=choices.get("foam_mending", AS_IT_IS),
         wires=choices.get("wires"),
     )
 

@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from seatlook import mesh
 from seatlook.errors import InputWarning
 from seatlook.io.toml import Document
+from seatlook.mesh.surface import winding
 from seatlook.model import FloatArray, Foam, Pattern, Pose
 
 # A cover is cut a little small and never much larger; beyond this the line and the wire do not
@@ -178,23 +179,8 @@ def _depth(curve: FloatArray, foam: Foam) -> float:
     triangles = foam.vertices[foam.faces]
     deepest = 0.0
     for point in far:
-        if _winding(point, triangles) > 0.5:
+        if winding(point, triangles) > 0.5:
             here = np.tile(point, (len(triangles), 1))
             nearest = _nearest(triangles, here)
             deepest = max(deepest, float(np.linalg.norm(nearest - point, axis=1).min()))
     return deepest
-
-
-def _winding(point: FloatArray, triangles: FloatArray) -> float:
-    """Times the surface winds around a point: solid angles (Van Oosterom and Strackee 1983)."""
-    a, b, c = (triangles - point).transpose(1, 0, 2)
-    la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
-    dot = np.einsum
-    top = dot("ij,ij->i", a, np.cross(b, c))
-    bottom = (
-        la * lb * lc
-        + dot("ij,ij->i", a, b) * lc
-        + dot("ij,ij->i", b, c) * la
-        + dot("ij,ij->i", c, a) * lb
-    )
-    return float(np.arctan2(top, bottom).sum() / (2 * np.pi))

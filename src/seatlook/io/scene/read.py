@@ -35,6 +35,7 @@ from seatlook.io.surface.foam import read_foam
 from seatlook.io.surface.formats import named_files
 from seatlook.io.texture_maps import map_files
 from seatlook.io.toml import Document, Key, read_document
+from seatlook.mesh.mending.mend import Mending
 from seatlook.model import (
     Appearance,
     Design,
@@ -190,6 +191,13 @@ class _Reader:
                 unit=row["unit"],
                 up=row["up"],
                 curves=curves,
+                mending=Mending(
+                    close=row["close"] or False,
+                    thicken=row["thicken_mm"] or 0.0,
+                    unite=row["unite"] or False,
+                    body=row["body"],
+                    smooth=row["smooth_mm"] or 0.0,
+                ),
             )
         except InputError as error:
             self._surface_problems("foam", path, error)

@@ -11,7 +11,7 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.files import write_text
 from seatlook.io.schema import shown
-from seatlook.io.surface.axes import Unit, Up, file_axes
+from seatlook.io.surface.axes import Axes, Unit, Up, file_axes
 from seatlook.io.surface.formats import joined, read_parts
 from seatlook.io.toml import read_file
 from seatlook.model import FloatArray, IntArray
@@ -55,10 +55,17 @@ def read_surface(
         For a face without a name, outside the vertices or of fewer than three, for a number that
         is none, and for a size not within 0.05 to 3 m; with the line of an OBJ, all together.
     """
+    return read_surface_axes(path, unit=unit, up=up, ungrouped=ungrouped)[0]
+
+
+def read_surface_axes(
+    path: Path, *, unit: Unit | None = None, up: Up | None = None, ungrouped: str | None = None
+) -> tuple[GroupedMesh, Axes]:
+    """Read a design surface (``read_surface``), and the axes of its file."""
     drawn = _read_obj(path, ungrouped) if path.suffix.lower() == ".obj" else _named(path, ungrouped)
     axes = file_axes(path, drawn.vertices[np.unique(drawn.faces)], unit, up)
     vertices, corner = _welded(axes.world(drawn.vertices))
-    return drawn._replace(vertices=vertices, faces=corner[drawn.faces])
+    return drawn._replace(vertices=vertices, faces=corner[drawn.faces]), axes
 
 
 def _named(path: Path, ungrouped: str | None) -> GroupedMesh:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatlook.wrinkle.orientation import agree
+from seatlook.mesh.orientation import agree
 from support.meshes import rectangle
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from seatlook.model import FloatArray, IntArray
+from seatlook.mesh.surface import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
