@@ -174,9 +174,7 @@ def _size_notes(path: Path, surface: io.FoamSurface, *, guessed: bool) -> tuple[
     """Say how large the foam is; one that stands on its edge is most often in other axes."""
     unit, up = surface.axes
     width, depth, height = (round(1e3 * v) for v in np.ptp(surface.vertices, axis=0))
-    notes = [
-        f"foam: {m.number} {m.what} at {surface.axes.place(m.place)}" for m in surface.mended
-    ]
+    notes = [f"foam: {m.number} {m.what} at {surface.axes.place(m.place)}" for m in surface.mended]
     notes += [f"foam: {width} mm wide, {depth} mm deep, {height} mm high"]
     if guessed and unit != "mm":
         notes.insert(0, f"{path}: read in {unit}, by its format or size")
