@@ -21,7 +21,8 @@ from seatlook.files import cache_folder, write_bytes
 from seatlook.model import FloatArray
 from seatlook.solver.kernels import distance as kernel
 
-_MAX_FILES = 32  # files, some 300 MB for foams of a seat's size; the one unused longest goes first
+_MAX_FILES = 32  # some 300 MB for single cushions; the file unused longest goes first
+_MAX_BYTES = 600_000_000  # three fields of whole seats
 _DIGEST = hashlib.sha256().digest_size
 
 
@@ -81,5 +82,9 @@ def _code() -> str:
 
 def _forget(base: Path) -> None:
     """Remove the files that were not used for longest."""
-    for path in sorted(base.glob("*.field"), key=lambda p: p.stat().st_mtime)[:-_MAX_FILES]:
-        path.unlink(missing_ok=True)
+    latest = sorted(base.glob("*.field"), key=lambda p: p.stat().st_mtime, reverse=True)
+    total = 0
+    for number, path in enumerate(latest):
+        total += path.stat().st_size
+        if number and (number >= _MAX_FILES or total > _MAX_BYTES):
+            path.unlink(missing_ok=True)

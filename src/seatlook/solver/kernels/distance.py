@@ -69,8 +69,8 @@ def fill_band(vertices, faces, grid, band, distance2, nearest):
 
 
 @njit(cache=True)
-def improve(vertices, faces, grid, distance2, nearest, start, before, changed):
-    """Let nodes outside the band (``start`` < 0) try the nearest faces of their neighbours.
+def improve(vertices, faces, grid, distance2, nearest, far, before, changed):
+    """Let nodes outside the band (``far``) try the nearest faces of their neighbours.
 
     Only where one of them has changed since, in the pass ``before`` or in this one.
     """
@@ -81,7 +81,7 @@ def improve(vertices, faces, grid, distance2, nearest, start, before, changed):
         for j in range(ny):
             p[1] = grid[1] + j * grid[3]
             for k in range(nz):
-                if start[i, j, k] >= 0:
+                if not far[i, j, k]:
                     continue
                 if not (
                     before[i, j, k]
