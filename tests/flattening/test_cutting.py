@@ -90,7 +90,11 @@ def test_outlines_are_made_of_lines_and_border_alone():
         else:
             assert all(tuple(edge) in cut.seam_lines for edge in ends.tolist())
     assert on_border == pytest.approx(2 * (LENGTH + WIDTH))
-    assert [seam.seam for seam in flatten(cut).seams] == ["across", "across_2", "branch"]
+    assert [seam.seam for seam in flatten(cut).seams] == [
+        "across.PANEL_1-PANEL_2",
+        "across.PANEL_1-PANEL_3",
+        "branch",
+    ]
 
 
 def test_panels_keep_the_names_of_the_groups_they_were_part_of():

@@ -35,7 +35,7 @@ def test_sides_of_two_panels_side_by_side():
     }
 
 
-def test_sides_split_where_three_panels_meet_and_number_repeats():
+def test_sides_split_where_three_panels_meet_and_say_where():
     """B and C lie on top of A; D below the whole row would be free."""
     surface = grid([0, 0, 0, 0, 1, 2, 2, 1], ("A", "B", "C"))
     with pytest.raises(InputError, match="panel B: got 2 boundary curves, Euler number 2"):
@@ -45,7 +45,7 @@ def test_sides_split_where_three_panels_meet_and_number_repeats():
     assert sorted(names) == ["A.B", "A.free", "B.A", "B.free"]
     surface = grid([0, 1, 0, 2, 0, 0, 0, 2], ("A", "B", "C"))
     names = [side.name for side in sides(surface.patches()) if side.panel == "A"]
-    assert sorted(names) == ["A.B", "A.C", "A.free", "A.free_2"]
+    assert sorted(names) == ["A.B", "A.C", "A.free.left", "A.free.right"]
 
 
 def test_indices_of_a_side_are_the_patch_s_own():

@@ -137,27 +137,30 @@ def pair(
 ) -> tuple[Seam, ...]:
     """Pair the sides that are sewn to each other; the one that comes first is side a.
 
-    A seam is called after the line that most of its edges lie on, the second one of a line
-    ``LINE_2``; without a line after its sides.
+    A seam is called after its panels, ``A-B``, with its place where they share several,
+    ``A-B.left``. One on a line of the user has the name of the line; where a line makes several
+    seams, each has that of its panels too: ``LINE.A-B``.
     """
-    seams: list[Seam] = []
-    again: dict[str, int] = {}
-    done: set[str] = set()
+    first: dict[str, Side] = {}
     for side in borders:
-        if side.partner is not None and side.name not in done:
-            done.add(side.partner)
-            name = _line(side, seam_lines)
-            again[name] = again.get(name, 0) + 1
-            name += f"_{again[name]}" if again[name] > 1 else ""
-            seams.append(Seam(name=name, a=side.name, b=(side.partner,)))
+        if side.partner is not None and side.partner not in first:
+            first[side.name] = side
+    lines = {name: _line(side, seam_lines) for name, side in first.items()}
+    made = Counter(lines.values())
+    seams = []
+    for name, side in first.items():
+        line = lines[name]
+        panels = f"{side.panel}-{side.neighbour}{'.' * bool(side.place)}{side.place}"
+        own = line if line and made[line] == 1 else ".".join(filter(None, (line, panels)))
+        seams.append(Seam(name=own, a=name, b=(str(side.partner),)))
     return tuple(seams)
 
 
 def _line(side: Side, seam_lines: Mapping[tuple[int, int], str]) -> str:
-    """Return the name of the line that a side lies on, or one made of its own."""
+    """Return the name of the line that most of a side lies on; empty for none."""
     ends = np.sort(np.column_stack([side.vertices[:-1], side.vertices[1:]]), axis=1)
     lines = Counter(seam_lines[a, b] for a, b in ends.tolist() if (a, b) in seam_lines)
-    return lines.most_common(1)[0][0] if lines else side.name.replace(".", "-")
+    return lines.most_common(1)[0][0] if lines else ""
 
 
 def _corners(outline: FloatArray, starts: list[int]) -> IntArray:

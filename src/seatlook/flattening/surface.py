@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from seatlook import mesh
 from seatlook.errors import InputError, Problem
+from seatlook.mesh.places import place_words
 from seatlook.model import FloatArray, IntArray
 
 FREE = "free"  # stands for the neighbour where a panel is not sewn
@@ -175,6 +176,7 @@ class Side:
     Parameters
     ----------
     panel, neighbour : names; the neighbour of a free edge is FREE, that of a dart its own panel
+    place : word by which it is told from other sides of the same two panels; empty for one alone
     partner : name of the side it is sewn to; None for a free edge
     start, count : first position in ``Patch.boundary`` and number of segments
     vertices : (count + 1,) int64   indices in the whole surface, in outline order
@@ -183,6 +185,7 @@ class Side:
     name: str
     panel: str
     neighbour: str
+    place: str
     partner: str | None
     start: int
     count: int
@@ -197,39 +200,99 @@ class Side:
 def sides(patches: tuple[Patch, ...]) -> tuple[Side, ...]:
     """Split every patch's outline where its partner changes, and at the tips of darts.
 
-    A side is called ``PANEL.NEIGHBOUR``; when there are several, ``PANEL.NEIGHBOUR_2`` and so on
-    in outline order. An outline with one neighbour all round is one side, closed.
+    A side is called ``PANEL.NEIGHBOUR``; where panels share several seams, with the place of each:
+    ``PANEL.NEIGHBOUR.left`` (see :func:`seatlook.mesh.places.place_words`). Of both sides of a dart
+    the one that runs to its tip ends with ``.in``, the other with ``.out``; where a panel is sewn
+    to itself from border to border, the one that runs to the left, the rear or the top. An outline
+    with one neighbour all round is one side, closed.
     """
     rings = [patch.source[patch.boundary].tolist() for patch in patches]
     across = _across(rings)
     stretches = [
-        (p, start, (stop - start) % len(rings[p]) or len(rings[p]))
+        _Stretch(p, start, (stop - start) % len(rings[p]) or len(rings[p]))
         for p, starts in enumerate(_starts(rings, across))
         for start, stop in zip(starts, [*starts[1:], starts[0]], strict=True)
     ]
-    names: dict[tuple[int, int], str] = {}
-    for p, start, _ in stretches:
-        other = across[p][start]
-        stem = f"{patches[p].name}.{FREE if other is None else patches[other[0]].name}"
-        again = sum(name == stem or name.startswith(f"{stem}_") for name in names.values())
-        names[p, start] = stem + (f"_{again + 1}" if again else "")
-    result = []
-    for p, start, count in stretches:
-        ring, other = rings[p], across[p][start]
-        last = across[p][(start + count - 1) % len(ring)]
-        at = [(start + i) % len(ring) for i in range(count + 1)]
-        result.append(
-            Side(
-                name=names[p, start],
-                panel=patches[p].name,
-                neighbour=FREE if other is None else patches[other[0]].name,
-                partner=None if last is None else names[last],
-                start=start,
-                count=count,
-                vertices=np.array(ring, dtype=np.int64)[at],
-            )
+    sewn = {(s.patch, s.start): across[s.patch][s.last(rings)] for s in stretches}
+    places = _places(patches, stretches, sewn)
+    names = {}
+    for stretch in stretches:
+        key = (stretch.patch, stretch.start)
+        own, other = patches[stretch.patch].name, sewn[key]
+        parts = [own, FREE if other is None else patches[other[0]].name, places[key]]
+        if other is not None and other[0] == stretch.patch:
+            parts.append(_flank(patches[stretch.patch], stretch, other[1]))
+        names[key] = ".".join(filter(None, parts))
+    return tuple(
+        Side(
+            name=names[s.patch, s.start],
+            panel=patches[s.patch].name,
+            neighbour=FREE if (other := sewn[s.patch, s.start]) is None else patches[other[0]].name,
+            place=places[s.patch, s.start],
+            partner=None if other is None else names[other],
+            start=s.start,
+            count=s.count,
+            vertices=np.array(rings[s.patch], dtype=np.int64)[s.at(rings)],
         )
-    return tuple(result)
+        for s in stretches
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Stretch:
+    """A side before it has a name: the first segment of an outline, and how many."""
+
+    patch: int
+    start: int
+    count: int
+
+    def at(self, rings: list[list[int]]) -> list[int]:
+        """Positions in the outline of its points."""
+        return [(self.start + i) % len(rings[self.patch]) for i in range(self.count + 1)]
+
+    def last(self, rings: list[list[int]]) -> int:
+        """Its last segment, whose partner is the first one of the side it is sewn to."""
+        return (self.start + self.count - 1) % len(rings[self.patch])
+
+    def points(self, patch: Patch) -> FloatArray:
+        """Its points (count + 1, 3) [m]."""
+        at = (self.start + np.arange(self.count + 1)) % len(patch.boundary)
+        return np.asarray(patch.vertices[patch.boundary[at]])
+
+
+def _places(
+    patches: tuple[Patch, ...],
+    stretches: list[_Stretch],
+    sewn: Mapping[_Segment, _Segment | None],
+) -> dict[_Segment, str]:
+    """The place of each side among those of the same two panels; one for both sides of a seam."""
+    alike: dict[tuple[int, int], list[_Stretch]] = {}
+    for stretch in stretches:
+        key = (stretch.patch, stretch.start)
+        other = sewn[key]
+        if other is None or key <= other:
+            pair = (stretch.patch, -1 if other is None else other[0])
+            alike.setdefault(pair, []).append(stretch)
+    places: dict[_Segment, str] = {}
+    for group in alike.values():
+        words = place_words([s.points(patches[s.patch]) for s in group])
+        for stretch, word in zip(group, words, strict=True):
+            key = (stretch.patch, stretch.start)
+            other = sewn[key]
+            places |= {key: word} | ({} if other is None else {other: word})
+    return places
+
+
+def _flank(patch: Patch, stretch: _Stretch, partner: int) -> str:
+    """Tell the sides of a dart, or of a seam of a panel with itself, from each other."""
+    end = (stretch.start + stretch.count) % len(patch.boundary)
+    to_tip = end == partner
+    from_tip = (partner + stretch.count) % len(patch.boundary) == stretch.start
+    if to_tip != from_tip:
+        return "in" if to_tip else "out"
+    points = stretch.points(patch)
+    way = points[-1] - points[0]
+    return "in" if way[np.abs(way).argmax()] > 0 else "out"
 
 
 def darts(patch: Patch, own: Sequence[Side]) -> list[tuple[IntArray, IntArray]]:
