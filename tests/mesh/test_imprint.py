@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from seatlook import mesh
 from seatlook.errors import InputError
-from seatlook.mesh.imprint import FLAT, SAME, imprint
+from seatlook.mesh.drawing import FLAT, SAME
+from seatlook.mesh.imprint import imprint
 from seatlook.mesh.line_ends import lay_on
 from support.meshes import KINDS, rectangle
 
@@ -52,8 +53,8 @@ def test_parts_of_a_face_name_it():
     drawn = imprint(vertices, faces, {"A": points((0, 0.11), (0.17, 0.2), (LENGTH, 0.07))})
     whole = np.bincount(drawn.source, mesh.face_areas(drawn.vertices, drawn.faces))
     before = mesh.face_areas(vertices, faces)
-    # Vertices that give way shift the borders of faces by at most a twentieth of an edge.
-    assert np.abs(whole - before).max() < 0.2 * before.max()
+    # Vertices that give way, and narrow faces that are merged, shift the borders of faces.
+    assert np.abs(whole - before).max() < 0.5 * before.max()
     assert whole.sum() == pytest.approx(before.sum(), abs=1e-12)
 
 
@@ -158,3 +159,24 @@ def test_the_tip_of_a_dart_stays_where_it_is():
     vertices, faces = plane("uns")
     dart = points((0, 0.1), (0.2, 0.1))
     assert lay_on(vertices, faces, {"A": dart}, tolerance=0.002)["A"].tolist() == dart.tolist()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@settings(max_examples=10, deadline=None)
+@given(ends=st.lists(st.floats(0.02, 0.28), min_size=2, max_size=2), seed=st.integers(0, 9))
+def test_a_border_that_is_shared_keeps_its_vertices(kind, ends, seed):
+    vertices, faces = plane(kind, seed)
+    line = points((0, ends[0]), (LENGTH, ends[1]))
+    drawn = imprint(vertices, faces, {"A": line}, border=False)
+    (rim,) = mesh.boundary_loops(faces)
+    assert np.isin(rim, drawn.faces).all()
+    assert (drawn.vertices[rim] == vertices[rim]).all()
+
+
+def test_narrow_faces_are_merged_and_the_line_stays_straight():
+    vertices, faces = plane("right")
+    drawn = imprint(vertices, faces, {"A": points((0, 0.1525), (LENGTH, 0.1475))})
+    assert np.degrees(mesh.angles(drawn.vertices, drawn.faces).min()) > 3
+    used = np.unique(list(drawn.edges))
+    x, y, _ = drawn.vertices[used].T
+    assert np.abs(y - (0.1525 - 0.0125 * x)).max() < 1e-12

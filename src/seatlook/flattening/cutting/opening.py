@@ -99,9 +99,8 @@ def _cut(
     surface: DesignSurface, index: int, patch: Patch, lines: Mapping[str, IntArray]
 ) -> DesignSurface:
     """Cut a panel along straight lines between the ends of these, or else along their edges."""
-    drawn = _straight(patch, lines) or imprint(
-        patch.vertices, patch.faces, {name: patch.vertices[line] for name, line in lines.items()}
-    )
+    ways = {name: patch.vertices[line] for name, line in lines.items()}
+    drawn = _straight(patch, lines) or imprint(patch.vertices, patch.faces, ways, border=False)
     # Vertices of the patch keep their numbers; those of a dart there are two of.
     number = np.append(patch.source, len(surface.vertices) + np.arange(len(drawn.vertices)))
     number = number[: len(drawn.vertices)]
@@ -125,7 +124,7 @@ def _straight(patch: Patch, lines: Mapping[str, IntArray]) -> Imprinted | None:
     """Draw straight lines between the ends; None where one leaves the panel or meets its border."""
     ends = {name: patch.vertices[line[[0, -1]]] for name, line in lines.items()}
     try:
-        drawn = imprint(patch.vertices, patch.faces, ends)
+        drawn = imprint(patch.vertices, patch.faces, ends, border=False)
     except InputError:
         return None
     inner = [v for pair in drawn.edges for v in pair]
