@@ -37,7 +37,7 @@ def init(
 ) -> None:
     """Write a commented scene for a pattern and a foam of your own, ready to check and evaluate.
 
-    Guesses which edges are sewn together (equal lengths, notches that meet, ends that meet), where
+    Guesses which edges are sewn together (lengths, notches, symmetry, a closed surface), where
     the panels start, and where the free edges are pulled to; says why beside each guess. Read
     seams.toml over: the guesses are the weakest part of the scene.
 
