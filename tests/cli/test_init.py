@@ -17,6 +17,7 @@ from seatlook.cli import run
 from seatlook.errors import InputError
 from seatlook.model import Pattern
 from seatlook.solver.foam.distance import distance_field
+from support.dxf_sheet import Sheet
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -243,3 +244,45 @@ def test_encoding_and_grain_go_into_the_scene(own, tmp_path, capsys):
     scene.write_text(text.replace("gb18030", "klingon"))
     with pytest.raises(InputError, match="encoding: got 'klingon'"):
         io.load_scene(scene)
+
+
+def test_the_pattern_is_reported_layer_by_layer(own, tmp_path, capsys):
+    files = [str(own / "cover.dxf"), str(own / "foam.obj"), "--out", str(tmp_path / "a")]
+    assert run(["init", *files]) == 0
+    said = capsys.readouterr().err
+    assert "cover.dxf: 7 pieces, a unit is 1 mm" in said
+    report = io.report_dxf(own / "cover.dxf")
+    for piece in report.pieces:
+        assert f"{piece.name}: layers with lines, points or texts" in said
+    for left, count in report.left.items():
+        assert f"not read: {count} {left.kind} on layer {left.layer} ({left.reason})" in said
+
+
+def test_how_the_foam_is_mended_goes_into_the_scene(own, tmp_path, capsys):
+    foam = io.read_foam_surface(own / "foam.obj", unit="mm")
+    bottom = foam.vertices[foam.faces][..., 2].max(axis=1) < foam.vertices[:, 2].min() + 1e-6
+    assert bottom.any()
+    io.write_obj(foam.vertices, foam.faces[~bottom], own / "open.obj")
+    files = [str(own / "cover.dxf"), str(own / "open.obj"), "--out", str(tmp_path / "a")]
+    assert run(["init", *files]) == 2
+    assert "close fills the holes" in capsys.readouterr().err
+    assert run(["init", *files, "--close"]) == 0
+    assert "openings closed flat" in capsys.readouterr().err
+    scene = tmp_path / "a/scene.toml"
+    assert "close = true\n" in scene.read_text()
+    closed = io.load_scene(scene).foam
+    size = np.ptp(closed.vertices, axis=0)
+    assert size == pytest.approx(np.ptp(foam.vertices, axis=0))
+
+
+def test_an_allowance_goes_into_the_scene(tmp_path, own):
+    pattern = own / "cut.dxf"
+    sheet = Sheet(pattern)
+    sheet.block("A", [(0, 0), (400, 0), (400, 300), (0, 300)])
+    sheet.insert("A")
+    sheet.document.saveas(pattern)
+    files = [str(pattern), str(own / "foam.obj"), "--out", str(tmp_path / "a")]
+    assert run(["init", *files, "--allowance-mm", "12"]) == 0
+    (panel,) = io.load_scene(tmp_path / "a/scene.toml").pattern.panels
+    assert 1e3 * np.ptp(panel.outline, axis=0) == pytest.approx([376, 276])
+    assert 1e3 * np.ptp(panel.cut_outline, axis=0) == pytest.approx([400, 300])

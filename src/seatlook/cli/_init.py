@@ -30,6 +30,7 @@ def init(
     units: Units | None = None,
     encoding: str | None = None,
     grain_deg: float | None = None,
+    allowance_mm: float | None = None,
     top: str | None = None,
     turn_deg: float = 0.0,
     force: Annotated[bool, Parameter(negative=())] = False,
@@ -65,6 +66,8 @@ def init(
         Encoding of the names in the DXF, as gb18030; guessed if not given.
     grain_deg
         Warp of panels without a grain line, from the pattern's x axis; 90 if not given.
+    allowance_mm
+        Width of the allowance where only the cut line is drawn: the sew line lies so far inside.
     top
         Panel that lies on top; the largest if not given.
     turn_deg
@@ -81,7 +84,8 @@ def init(
             pattern, foam, out,
             unit=unit, up=up, mending=(mending or MendingOptions()).choices(),
             material=material, foam_material=foam_material, seams=seams,
-            wires=wires, size=size, units=units, encoding=encoding, grain_deg=grain_deg, top=top,
+            wires=wires, size=size, units=units, encoding=encoding, grain_deg=grain_deg,
+            allowance_mm=allowance_mm, top=top,
             turn_deg=turn_deg, force=force,
         )  # fmt: skip
     note(*first.notes)

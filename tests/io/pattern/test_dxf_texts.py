@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from seatlook.errors import InputError, InputWarning
 from seatlook.io import read_dxf
-from support.dxf_sheet import one_piece
+from support.dxf_sheet import L_AREA, area, one_piece
 
 
 @pytest.mark.parametrize(
@@ -91,9 +91,35 @@ def test_block_names_of_any_characters(tmp_path_factory, name):
     assert [p.name for p in read_dxf(path)] == [name]
 
 
-def test_two_blocks_of_one_name_are_refused(write):
+def test_two_blocks_of_one_name_put_once_are_refused(write):
     whole = one_piece("A")
     start, stop = whole.index("0\nBLOCK\n"), whole.index("0\nENDSEC")
     path = write("a.dxf", whole[:stop] + whole[start:stop] + whole[stop:])
-    with pytest.raises(InputError, match="got two blocks called a, expected a name for each"):
+    with pytest.raises(InputError, match="got 2 blocks called a, put in 1 places, expected a name"):
         read_dxf(path)
+
+
+@pytest.mark.parametrize("name", ["DETAIL", "LH/RH"])
+def test_blocks_of_one_name_are_pieces_by_their_order(write, name):
+    """As an exporter writes pieces that nobody has named."""
+    whole = one_piece(name)
+    start, stop = whole.index("0\nBLOCK\n"), whole.index("0\nENDSEC")
+    other = whole[start:stop].replace("\n300\n", "\n360\n")
+    insert = whole.index("0\nINSERT")
+    again = "0\nINSERT\n8\n1\n2\n" + name + "\n10\n0\n20\n500\n"
+    path = write("a.dxf", whole[:stop] + other + whole[stop:insert] + again + whole[insert:])
+    with pytest.warns(InputWarning) as said:
+        panels = read_dxf(path)
+    assert [p.name for p in panels] == [name, f"{name}_2"]
+    assert [area(p.cut_outline) for p in panels] == pytest.approx([L_AREA, L_AREA + 60 * 100])
+    assert any("several blocks have one name, each is a piece" in str(w.message) for w in said)
+
+
+def test_a_file_without_a_unit_is_in_mm_where_only_that_makes_a_piece(write):
+    whole = one_piece("A").replace("UNITS: METRIC", "made by hand")
+    with pytest.warns(InputWarning, match="names no unit: read in mm, as its longest line is 300"):
+        (panel,) = read_dxf(write("a.dxf", whole))
+    assert area(panel.cut_outline) == pytest.approx(L_AREA)
+    small = whole.replace("\n300\n", "\n200\n")
+    with pytest.raises(InputError, match="UNITS: got no such text"):
+        read_dxf(write("b.dxf", small))

@@ -26,6 +26,7 @@ from seatlook.chain.start.scene_file import (
     write_scene,
 )
 from seatlook.errors import InputError
+from seatlook.io.pattern.seams import Reading
 from seatlook.io.pattern.units import Units
 from seatlook.io.surface.axes import Unit, Up
 from seatlook.mesh.mending.mend import AS_IT_IS, Mending
@@ -42,7 +43,8 @@ class StartChoices(TypedDict, total=False):
     ``mending`` of its surface; ``material`` and
     ``foam_material``: supplied names or files; ``seams``: file taken instead of a guess; ``wires``:
     curves file of the wires in the foam; ``size``, ``units`` and ``encoding`` of the pattern, and
-    ``grain_deg`` of its pieces without a grain line; ``top``: the panel on top, turned by
+    ``grain_deg`` of its pieces without a grain line, ``allowance_mm`` of those without a sew line;
+    ``top``: the panel on top, turned by
     ``turn_deg``; ``force``: write over a scene that is there.
     """
 
@@ -57,6 +59,7 @@ class StartChoices(TypedDict, total=False):
     units: Units | None
     encoding: str | None
     grain_deg: float | None
+    allowance_mm: float | None
     top: str | None
     turn_deg: float
     force: bool
@@ -71,7 +74,7 @@ class FirstScene:
     scene : its file
     proposal : the seams, and why each was guessed
     hooks : seams that lie beside wires
-    notes : sentences on what was guessed of the foam
+    notes : what was read of the pattern and what was not, and what was guessed of the foam
     """
 
     scene: Path
@@ -122,7 +125,10 @@ def init(
     files = cut, folder / SEAMS if own_seams is None else own_seams
     draft = _draft(files, proposal.pattern, layout, filling, choices)
     return FirstScene(
-        scene=write_scene(draft, folder), proposal=proposal, hooks=draft.hooks, notes=filling.notes
+        scene=write_scene(draft, folder),
+        proposal=proposal,
+        hooks=draft.hooks,
+        notes=(*_pattern_notes(cut, choices), *filling.notes),
     )
 
 
@@ -145,6 +151,7 @@ def _draft(
             "units": choices.get("units"),
             "encoding": choices.get("encoding"),
             "grain_deg": choices.get("grain_deg"),
+            "allowance_mm": choices.get("allowance_mm"),
         },
         guessed=choices.get("seams") is None,
         material=material,
@@ -168,17 +175,32 @@ def _check_files(pattern: Path, foam: Path, out: Path, *, force: bool) -> None:
     refuse_scene(out, SEAMS, force=force)
 
 
+def _pattern_notes(cut: Path, choices: StartChoices) -> tuple[str, ...]:
+    """Say what was read of the pattern, and what was not."""
+    if cut.suffix.lower() != ".dxf":
+        return ()
+    report = io.report_dxf(
+        cut,
+        size=choices.get("size"),
+        units=choices.get("units"),
+        encoding=choices.get("encoding"),
+    )
+    return tuple(f"{cut.name}: {line}" for line in report.lines())
+
+
 def _sewn(pattern: Path, seams: Path | None, choices: StartChoices) -> Proposal:
     """Guess the seams, or read those of the user."""
-    size, units = choices.get("size"), choices.get("units")
-    encoding, grain_deg = choices.get("encoding"), choices.get("grain_deg")
-    if seams is None:
-        return propose_seams(
-            io.read_panels(pattern, size=size, units=units, encoding=encoding, grain_deg=grain_deg)
-        )
-    read = io.read_pattern(
-        pattern, seams, size=size, units=units, encoding=encoding, grain_deg=grain_deg
+    width = choices.get("allowance_mm")
+    reading = Reading(
+        size=choices.get("size"),
+        units=choices.get("units"),
+        encoding=choices.get("encoding"),
+        grain_deg=choices.get("grain_deg"),
+        allowance=None if width is None else width / 1e3,
     )
+    if seams is None:
+        return propose_seams(io.read_panels(pattern, **reading))
+    read = io.read_pattern(pattern, seams, **reading)
     sewn = {name for seam in read.seams for name in (seam.a, *seam.b)}
     return Proposal(
         pattern=read,

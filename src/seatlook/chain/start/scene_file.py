@@ -91,7 +91,7 @@ class SceneDraft:
     ----------
     name : of the scene
     pattern, seams : files
-    reading : how the pattern is read: size, units, encoding, grain_deg; None for those not said
+    reading : how the pattern is read: size, units and so on; None for those not said
     guessed : whether the seams are guessed
     material : of all panels but those in ``panels``; names or files
     curves : name -> (k, 3) [m], besides the wires

@@ -17,6 +17,7 @@ from ezdxf.lldxf.const import DXFError
 from shapely.errors import ShapelyError
 
 from seatlook.errors import InputError, InputWarning, Problem
+from seatlook.io.pattern.allowance import only_cut, with_allowance
 from seatlook.io.pattern.drawing.drawing import Drawing, open_drawing, refusal
 from seatlook.io.pattern.drawing.entities import Drawn, has_line, read_entities, read_texts
 from seatlook.io.pattern.drawing.layers import BOUNDARY
@@ -40,6 +41,7 @@ def read_dxf(
     smallest_notch: float = SMALLEST_NOTCH,
     encoding: str | None = None,
     grain_deg: float | None = None,
+    allowance: float | None = None,
 ) -> tuple[Panel, ...]:
     """Read the pieces of a pattern.
 
@@ -55,6 +57,9 @@ def read_dxf(
     encoding : of the names, as ``gb18030``; else by the file's code page, or guessed
     grain_deg : float [deg]
         Warp of the pieces without a grain line, from the x axis; +y if not given.
+    allowance : float [m]
+        Width of the allowance of pieces of which only the cut line is drawn: their sew line lies
+        that much inside.
 
     Returns
     -------
@@ -76,9 +81,26 @@ def read_dxf(
         path, size=size, units=units, smallest_notch=smallest_notch, encoding=encoding,
         grain_deg=grain_deg,
     )  # fmt: skip
+    panels = _sewn_inside(path, panels, allowance, report)
     for text in report.warnings():
         warnings.warn(f"{path}: {text}", InputWarning, 2)
     return panels
+
+
+def _sewn_inside(
+    path: Path, panels: tuple[Panel, ...], allowance: float | None, report: PatternReport
+) -> tuple[Panel, ...]:
+    """Give panels without a sew line one by the width of their allowance."""
+    if allowance is None:
+        return panels
+    drawn = [panel.name for panel in panels if not only_cut(panel)]
+    if drawn:
+        names = ", ".join(drawn)
+        report.notes.append(f"allowance_mm is not used where a sew line is drawn: {names}")
+    try:
+        return tuple(with_allowance(p, allowance) if only_cut(p) else p for p in panels)
+    except InputError as error:
+        raise InputError(replace(p, file=path) for p in error.problems) from error
 
 
 def report_dxf(path: Path, **options: Any) -> PatternReport:
@@ -101,7 +123,12 @@ def read_drawing(
     try:
         titles = _titles(drawing.document)
         report.mm_per_unit = millimetres_per_unit(
-            path, titles.get("units"), units, drawing.header, report.notes
+            path,
+            titles.get("units"),
+            units,
+            drawing.header,
+            report.notes,
+            lambda: _longest(drawing.document),
         )
         pieces = _pieces(drawing, titles, size, report)
         panels = _panels(path, pieces, report, 1e3 * smallest_notch, grain_deg)
@@ -148,6 +175,13 @@ def _titles(document: Any) -> dict[str, str]:
     for layout in (*document.blocks, document.modelspace()):
         titles |= read_texts(layout)
     return titles
+
+
+def _longest(document: Any) -> float:
+    """Longest extent of a line of the file, in its own units; 0 where there is none."""
+    layouts = (read_entities(block, 1.0) for block in (*document.blocks, document.modelspace()))
+    lines = [line for drawn in layouts for rows in drawn.lines.values() for line in rows]
+    return max((float(np.ptp(line, axis=0).max()) for line in lines), default=0.0)
 
 
 def _pieces(

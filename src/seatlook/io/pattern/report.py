@@ -56,3 +56,15 @@ class PatternReport:
                 if left.reason not in expected
             ),
         ]
+
+    def lines(self) -> list[str]:
+        """Say what was read, piece by piece, and all that was not read, with the reason."""
+        pieces = [f"{len(self.pieces)} pieces, a unit is {self.mm_per_unit:g} mm"]
+        for piece in self.pieces:
+            layers = ", ".join(f"{layer} ({count})" for layer, count in piece.layers.items())
+            quantity = f", quantity {piece.quantity}" if piece.quantity else ""
+            pieces.append(f"{piece.name}: layers with lines, points or texts {layers}{quantity}")
+        return pieces + [
+            f"not read: {count} {left.kind} on layer {left.layer} ({left.reason})"
+            for left, count in sorted(self.left.items(), key=lambda item: str(item[0]))
+        ]

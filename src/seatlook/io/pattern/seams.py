@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
 from seatlook.errors import InputError, did_you_mean
 from seatlook.files import write_text
-from seatlook.io.pattern.dxf import SMALLEST_NOTCH, read_dxf
+from seatlook.io.pattern.allowance import only_cut, with_edge_allowances
+from seatlook.io.pattern.dxf import read_dxf
 from seatlook.io.pattern.units import Units
 from seatlook.io.schema import (
     MM,
@@ -51,6 +52,7 @@ _KEYS: dict[str, Kind] = {
                 "panel": Text(required=True),
                 "from_mm": Array(shape=(2,), required=True),
                 "to_mm": Array(shape=(2,), required=True),
+                "allowance_mm": Number(low=0, high=100, scale=MM),
             }
         ),
         required=True,
@@ -71,43 +73,34 @@ _KEYS: dict[str, Kind] = {
 }
 
 
-def read_panels(
-    path: Path,
-    *,
-    size: str | None = None,
-    units: Units | None = None,
-    smallest_notch: float = SMALLEST_NOTCH,
-    encoding: str | None = None,
-    grain_deg: float | None = None,
-) -> tuple[Panel, ...]:
+class Reading(TypedDict, total=False):
+    """How a pattern file is read; see ``read_dxf``."""
+
+    size: str | None
+    units: Units | None
+    smallest_notch: float
+    encoding: str | None
+    grain_deg: float | None
+    allowance: float | None
+
+
+def read_panels(path: Path, **reading: Unpack[Reading]) -> tuple[Panel, ...]:
     """Read the panels of a pattern file of any format in ``READERS``."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         expected = f"one of {', '.join(READERS)}"
         raise InputError.single("file", got=shown(path.suffix), expected=expected, file=path)
-    return reader(
-        path, size=size, units=units, smallest_notch=smallest_notch, encoding=encoding,
-        grain_deg=grain_deg,
-    )  # fmt: skip
+    return reader(path, **reading)
 
 
-def read_pattern(
-    path: Path,
-    seams: Path,
-    *,
-    size: str | None = None,
-    units: Units | None = None,
-    smallest_notch: float = SMALLEST_NOTCH,
-    encoding: str | None = None,
-    grain_deg: float | None = None,
-) -> Pattern:
+def read_pattern(path: Path, seams: Path, **reading: Unpack[Reading]) -> Pattern:
     """Read a pattern and how it is sewn.
 
     Parameters
     ----------
     path : pattern file (AAMA DXF)
     seams : seams file; see docs/reference/scene.md
-    size, units, smallest_notch, encoding, grain_deg : as in ``read_dxf``
+    reading : as in ``read_dxf``
 
     Raises
     ------
@@ -116,15 +109,11 @@ def read_pattern(
         corner, a seam of an unknown edge, a length that is not the one stated. All problems of the
         seams file are reported together.
     """
-    panels = read_panels(
-        path, size=size, units=units, smallest_notch=smallest_notch, encoding=encoding,
-        grain_deg=grain_deg,
-    )  # fmt: skip
-    return read_seams(seams, panels)
+    return read_seams(seams, read_panels(path, **reading), reading.get("allowance") or 0.0)
 
 
-def read_seams(path: Path, panels: tuple[Panel, ...]) -> Pattern:
-    """Read the seams file of ``panels``; see ``read_pattern``."""
+def read_seams(path: Path, panels: tuple[Panel, ...], allowance: float = 0.0) -> Pattern:
+    """Read the seams file of ``panels``, whose sew lines lie ``allowance`` [m] inside."""
     document = read_document(path)
     row = read_table(document, _KEYS)
     by_name = {p.name: p for p in panels}
@@ -137,7 +126,7 @@ def read_seams(path: Path, panels: tuple[Panel, ...]) -> Pattern:
         _check_names(document, number, values, tuple(row["edge"]))
     document.finish()
     pattern = Pattern(
-        panels=panels,
+        panels=_with_own_allowances(document, row["edge"], edges, panels, allowance),
         edges=MappingProxyType(edges),
         seams=tuple(
             Seam(name=s["name"], a=s["a"], b=s["b"], reverse=s["reverse"], pitch=s["pitch_mm"])
@@ -148,6 +137,32 @@ def read_seams(path: Path, panels: tuple[Panel, ...]) -> Pattern:
         _check_lengths(document, number, values, pattern)
     document.finish()
     return pattern
+
+
+def _with_own_allowances(
+    document: Document,
+    rows: dict[str, dict[str, Any]],
+    edges: dict[str, Edge],
+    panels: tuple[Panel, ...],
+    allowance: float,
+) -> tuple[Panel, ...]:
+    """Move the sew lines of edges that have an allowance of their own."""
+    moved = []
+    for panel in panels:
+        own = {name: edge for name, edge in edges.items() if edge.panel == panel.name}
+        widths = {n: w for n in own if (w := rows[n]["allowance_mm"]) is not None}
+        if widths and not (only_cut(panel) or allowance):
+            first = next(iter(widths))
+            document.report(
+                ("edge", first, "allowance_mm"), f"{1e3 * widths[first]:g}",
+                f"none, as the sew line of {panel.name} is drawn",
+            )  # fmt: skip
+        elif widths:
+            with document.blame(("edge", next(iter(widths)))):
+                panel = with_edge_allowances(panel, own, widths, allowance)
+        moved.append(panel)
+    document.finish()
+    return tuple(moved)
 
 
 def _edge(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -18,15 +18,23 @@ MM_PER_UNIT = {
     "english": 25.4, "imperial": 25.4, "inch": 25.4, "inches": 25.4, "in": 25.4,
 }  # fmt: skip
 _INSUNITS = {"1": 25.4, "2": 304.8, "4": 1.0, "5": 10.0, "6": 1000.0, "10": 914.4, "14": 100.0}
+_ONLY_MM = (250.0, 10_000.0)  # longest lines; in cm the piece would be 2.5 m or more
 _MEASUREMENT = {"0": 25.4, "1": 1.0}
 
 
 def millimetres_per_unit(
-    path: Path, text: str | None, units: Units | None, header: Mapping[str, str], notes: list[str]
+    path: Path,
+    text: str | None,
+    units: Units | None,
+    header: Mapping[str, str],
+    notes: list[str],
+    largest: Callable[[], float],
 ) -> float:
-    """Return millimetres per unit: by the UNITS text, ``units``, or the header, in this order.
+    """Return millimetres per unit: by the UNITS text, ``units``, the header, or the size.
 
-    The header comes last because drawing programs fill it with what they happen to be set to.
+    The header comes late because drawing programs fill it with what they happen to be set to.
+    ``largest`` gives the longest extent of a line in the file's units: a number that would be too
+    large for a piece in any other unit is one of millimetres.
 
     Raises
     ------
@@ -45,6 +53,10 @@ def millimetres_per_unit(
         if size is not None:
             notes.append(f"no UNITS text: a unit is {size:g} mm, by {variable}")
             return size
+    size = largest()
+    if _ONLY_MM[0] <= size <= _ONLY_MM[1]:
+        notes.append(f"the file names no unit: read in mm, as its longest line is {size:.4g}")
+        return 1.0
     raise InputError.single(
         "UNITS", got="no such text", expected="METRIC or ENGLISH", file=path,
         hint="say units = \"metric\" if the file is in millimetres",

@@ -41,6 +41,7 @@ KEYS: dict[str, Kind] = {
             "units": Text(choices=PATTERN_UNITS),
             "encoding": Text(),
             "grain_deg": Number(),
+            "allowance_mm": Number(above=0, high=100, scale=MM),
             "material": Text(),
         },
         required=True,

@@ -150,6 +150,7 @@ class _Reader:
                 units=row["units"],
                 encoding=row["encoding"],
                 grain_deg=row["grain_deg"],
+                allowance=row["allowance_mm"],
                 smallest_notch=SMALLEST_NOTCH if notch is None else notch,
             )
         except InputError as error:

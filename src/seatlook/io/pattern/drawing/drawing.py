@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -68,7 +67,7 @@ def open_drawing(path: Path, encoding: str | None = None) -> Drawing:
                 text, guess = decode(content, path, encoding)
                 if guess is not None:
                     notes.append(f"no code page is given: read as {guess}, a guess")
-                text = _with_safe_names(text, path, names, header)
+                text = _with_safe_names(text, path, names, header, notes)
                 document = ezdxf.filemanagement.read(io.StringIO(text))
         except InputError:
             raise
@@ -86,30 +85,54 @@ def refusal(path: Path, error: Exception) -> InputError:
     return InputError.single("file", got=got, expected="a whole DXF file", file=path)
 
 
-def _with_safe_names(text: str, path: Path, names: dict[str, str], header: dict[str, str]) -> str:
+def _with_safe_names(
+    text: str, path: Path, names: dict[str, str], header: dict[str, str], notes: list[str]
+) -> str:
     """Put stand-ins for block names that the library refuses, and take the header's values.
 
-    LH/RH is an everyday name of a piece; a drawing program would not allow it.
+    LH/RH is an everyday name of a piece; a drawing program would not allow it. Several blocks of
+    one name are told apart by their order, which is that of the places where they are put.
     """
     lines = text.split("\n")
-    stand_ins: dict[str, str] = {}
-    blocks: Counter[str] = Counter()
+    places: dict[tuple[str, str], list[int]] = {}
     for k, entity, code in _tags(lines):
         value = lines[k].strip()
         if entity.startswith("$"):
             header.setdefault(entity, value)
-        elif code in ("2", "3") and entity in ("BLOCK", "INSERT"):
-            if entity == "BLOCK" and code == "2":
-                blocks[value.casefold()] += 1
-            if value and not is_valid_block_name(value):
-                stand_in = stand_ins.setdefault(value, f"{_STAND_IN}{len(stand_ins)}")
+        elif code in ("2", "3") and entity in ("BLOCK", "INSERT") and value:
+            places.setdefault((entity + code, value.casefold()), []).append(k)
+    doubled = _doubled(places, path)
+    if doubled:
+        shown = ", ".join(decode_dxf_unicode(name) for name in doubled)
+        notes.append(f"several blocks have one name, each is a piece: {shown}")
+    stand_ins: dict[tuple[str, int], str] = {}
+    for (_, name), rows in places.items():
+        for number, k in enumerate(rows):
+            value = lines[k].strip()
+            if name in doubled or not is_valid_block_name(value):
+                key = (name, number) if name in doubled else (value, 0)
+                stand_in = stand_ins.setdefault(key, f"{_STAND_IN}{len(stand_ins)}")
                 names[stand_in] = value
                 lines[k] = stand_in
-    double = [name for name, count in blocks.items() if count > 1 and not name.startswith("*")]
-    if double:
-        got = f"two blocks called {decode_dxf_unicode(double[0])}"
-        raise InputError.single("blocks", got=got, expected="a name for each", file=path)
     return "\n".join(lines)
+
+
+def _doubled(places: Mapping[tuple[str, str], list[int]], path: Path) -> list[str]:
+    """Return the names that several blocks have; those that are not put once each are refused."""
+    doubled = []
+    for (kind, name), rows in places.items():
+        if kind == "BLOCK2" and len(rows) > 1 and not name.startswith("*"):
+            doubled.append(name)
+            inserts = len(places.get(("INSERT2", name), ()))
+            if inserts not in (0, len(rows)):
+                raise InputError.single(
+                    "blocks",
+                    got=f"{len(rows)} blocks called {decode_dxf_unicode(name)}, put in {inserts} "
+                    "places",
+                    expected="a name for each",
+                    file=path,
+                )
+    return doubled
 
 
 def _tags(lines: list[str]) -> Iterator[tuple[int, str, str]]:
