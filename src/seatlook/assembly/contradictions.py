@@ -14,10 +14,17 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from seatlook.assembly.sewn_surface import (
+    WIDEST_POINT,
+    SewnSurface,
+    alike,
+    exchanged,
+    sewn_surface,
+)
 from seatlook.errors import InputError, Problem
 from seatlook.io.toml import Document, Key, read_document, spelled
 from seatlook.mesh import face_areas
-from seatlook.model import Anchor, Cover, FloatArray, Foam, IntArray, Points, Scene, Stitching
+from seatlook.model import Anchor, Cover, FloatArray, IntArray, Points, Scene, Stitching
 from seatlook.solver.foam.distance import DistanceField, distance_field
 
 FARTHEST_WIRE = 0.100  # m, mean way of a hooked line to its wire; 40 mm on the demo
@@ -29,7 +36,6 @@ LARGEST, SMALLEST = 4.0, 0.01  # area of the panels over that of the foam; .55 o
 TWISTED = 0.95  # gap of a seam with one side turned round, over its gap; 1.15 and more on the demo
 EXCHANGED = 0.5  # gap of two seams with exchanged partners, over their gap
 _APART = 0.050  # m, mean gap from which partners can be exchanged
-_ALIKE = 0.1  # difference in length of seams that could be taken for each other
 _SHARES = np.linspace(0.0, 1.0, 11)  # of a seam's length, where gaps are measured
 
 
@@ -51,18 +57,38 @@ def contradictions(scene: Scene, cover: Cover) -> tuple[Contradiction, ...]:
     """Find what a solve could not mend and the scene does not allow.
 
     These are ties that send one point to two places, a hook far from its wire, a curve through the
-    foam, a pattern out of scale, panels that start inside the foam, seams twisted or exchanged.
+    foam, panels that start inside the foam, seams twisted or exchanged.
     """
     lines = _Lines(scene)
     found = list(_seams(lines, scene, cover))
     found += _shared_points(lines, cover)
     if cover.foam is not None:
         field = distance_field(cover.foam.vertices, cover.foam.faces)
-        found += _scale(lines, cover, cover.foam)
         found += _starts(lines, cover, field)
         found += _curves(lines, scene, cover, field)
         found += _hooks(lines, scene, cover)
     return tuple(one for one in found if one.name not in scene.allowed)
+
+
+def out_of_scale(scene: Scene) -> tuple[Contradiction, ...]:
+    """Find a pattern that is far too large or small for the foam, if the scene does not allow it.
+
+    It is looked at before the cover is meshed, which would take too long.
+    """
+    lines, foam = _Lines(scene), face_areas(scene.foam.vertices, scene.foam.faces).sum()
+    area = sum(panel.area for panel in scene.pattern.panels)
+    ratio = float(area / foam)
+    if "scale" in scene.allowed or SMALLEST <= ratio <= LARGEST:
+        return ()
+    return (
+        lines.problem(
+            "scale",
+            ("pattern", "file"),
+            [],
+            f"panels of {1e4 * area:.4g} cm2, {ratio:.3g} times the foam's area",
+            f"{SMALLEST:g} to {LARGEST:g} times: is one of them in another unit?",
+        ),
+    )
 
 
 def refuse(found: Iterable[Contradiction]) -> None:
@@ -130,39 +156,60 @@ def _contradiction(
 
 
 def _seams(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[Contradiction]:
-    """Seams whose ties cross, and pairs that would be shorter with each other's partners."""
+    """Seams that turn a panel inside out or whose ties cross, and pairs that want to change."""
     sides = [(_at_shares(s, s.a, cover), _at_shares(s, s.b, cover)) for s in cover.stitchings]
-    number = {seam.name: k for k, seam in enumerate(scene.pattern.seams)}
     gaps = [_gap(a, b) for a, b in sides]
-    for seam, (a, b), gap in zip(cover.stitchings, sides, gaps, strict=True):
+    seams = scene.pattern.seams
+    for number, (seam, (a, b), gap) in enumerate(zip(seams, sides, gaps, strict=True)):
         turned = _gap(a, b[::-1])
-        if turned < TWISTED * gap:
+        crossed = turned < TWISTED * gap
+        if crossed or not seam.reverse:
+            way = "whose ties cross" if crossed else "which turns a panel inside out"
             yield lines.seam(
                 "twisted seam",
-                number[seam.name],
+                number,
                 [a[0], b[0]],
-                f"{seam.name!r}, whose ties cross: {1e3 * gap:.0f} mm from side to side, and "
+                f"{seam.name!r}, {way}: {1e3 * gap:.0f} mm from side to side, and "
                 f"{1e3 * turned:.0f} mm with one side turned round ({_place(a[0])} is sewn to "
                 f"{_place(b[0])})",
                 "sides that run the same way: exchange from and to, or reverse",
             )
-    long = [float(seam.length.sum()) for seam in cover.stitchings]
+    pairs = {
+        (seams.index(one), seams.index(two)): "; sewn so, the panels make no cover"
+        for one, two in exchanged(scene.pattern)
+    }
     for i, j in combinations(range(len(sides)), 2):
-        if abs(long[i] - long[j]) > _ALIKE * max(long[i], long[j]):
-            continue
-        gap = gaps[i] + gaps[j]
         other = _nearer(sides[i][0], sides[j][1]) + _nearer(sides[j][0], sides[i][1])
-        if gap > 2 * _APART and other < EXCHANGED * gap:
-            one, two = (cover.stitchings[k].name for k in (i, j))
+        far = gaps[i] + gaps[j] > 2 * _APART and other < EXCHANGED * (gaps[i] + gaps[j])
+        if (i, j) in pairs or (far and alike(scene.pattern, seams[i], seams[j])):
             yield lines.seam(
                 "exchanged seams",
-                number[one],
+                i,
                 [sides[i][0][5], sides[j][0][5]],
-                f"{one!r} and {two!r}, {1e3 * gaps[i]:.0f} and {1e3 * gaps[j]:.0f} mm from side to "
-                f"side at {_place(sides[i][0][5])} and {_place(sides[j][0][5])}; with each other's "
-                f"partners {1e3 * other / 2:.0f} mm",
+                f"{seams[i].name!r} and {seams[j].name!r}, {1e3 * gaps[i]:.0f} and "
+                f"{1e3 * gaps[j]:.0f} mm from side to side at {_place(sides[i][0][5])} and "
+                f"{_place(sides[j][0][5])}; with each other's partners {1e3 * other / 2:.0f} mm"
+                f"{pairs.get((i, j), '')}",
                 "each edge sewn to the partner beside it",
             )
+    if not pairs and not (surface := sewn_surface(scene.pattern, seams)).closed:
+        yield _no_cover(lines, surface)
+
+
+def _no_cover(lines: _Lines, surface: SewnSurface) -> Contradiction:
+    """Seams that no exchange of two partners makes a cover of."""
+    places, angle = max(surface.points, key=lambda point: point[1])
+    what = f"panels that make a surface with {surface.handles} handles"
+    if not surface.handles:
+        names = ", ".join(sorted({panel for panel, _ in places}))
+        what = f"{np.degrees(angle):.0f} degrees at the point where {names} meet"
+    return lines.seam(
+        "exchanged seams",
+        0,
+        [],
+        what,
+        f"none, and at most {np.degrees(WIDEST_POINT):.0f} degrees: each edge sewn to its partner",
+    )
 
 
 def _shared_points(lines: _Lines, cover: Cover) -> Iterator[Contradiction]:
@@ -177,7 +224,7 @@ def _shared_points(lines: _Lines, cover: Cover) -> Iterator[Contradiction]:
     for pulled in ties.values():
         for (one, here), (two, there) in combinations(pulled, 2):
             apart = float(np.linalg.norm(here - there))
-            if one is two or apart <= TIES_APART or (one.name, two.name) in seen:
+            if apart <= TIES_APART or (one.name, two.name) in seen:
                 continue
             seen.add((one.name, two.name))
             yield lines.problem(
@@ -188,19 +235,6 @@ def _shared_points(lines: _Lines, cover: Cover) -> Iterator[Contradiction]:
                 f"{one.name!r} pulls to {_place(here)}, {1e3 * apart:.1f} mm away",
                 f"one place for a shared point, to {1e3 * TIES_APART:g} mm",
             )
-
-
-def _scale(lines: _Lines, cover: Cover, foam: Foam) -> Iterator[Contradiction]:
-    """A pattern that is far too large or small for the foam."""
-    ratio = float(cover.rest_area.sum() / face_areas(foam.vertices, foam.faces).sum())
-    if not SMALLEST <= ratio <= LARGEST:
-        yield lines.problem(
-            "scale",
-            ("pattern", "file"),
-            [],
-            f"panels of {1e4 * cover.rest_area.sum():.4g} cm2, {ratio:.3g} times the foam's area",
-            f"{SMALLEST:g} to {LARGEST:g} times: is one of them in another unit?",
-        )
 
 
 def _starts(lines: _Lines, cover: Cover, field: DistanceField) -> Iterator[Contradiction]:

@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING
 
 from seatlook import io, pbr
 from seatlook.assembly import assemble
-from seatlook.assembly.contradictions import Contradiction, contradictions, refuse
+from seatlook.assembly.contradictions import (
+    Contradiction,
+    contradictions,
+    out_of_scale,
+    refuse,
+)
 from seatlook.chain.assess import Assessment, assess, limited, zones_with_faces
 from seatlook.chain.choose import Look, camera_of, look_of, narrowed, rig_of
 from seatlook.chain.draw import map_ends
@@ -84,9 +89,12 @@ class Case:
         Raises
         ------
         InputError
-            As ``assemble``.
+            As ``assemble``; or the pattern is out of scale with the foam.
         """
-        return assemble(self.scene) if self._solution is None else self._solution.cover
+        if self._solution is not None:
+            return self._solution.cover
+        refuse(out_of_scale(self.scene))
+        return assemble(self.scene)
 
     @property
     def solution(self) -> Solution:

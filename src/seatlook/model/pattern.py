@@ -69,6 +69,12 @@ class Panel:
         floats(self, "cut_outline", None, 2)
         floats(self, "grain", 2)
 
+    @property
+    def area(self) -> float:
+        """Area inside the sew line [m2]."""
+        x, y = self.outline.T
+        return float(0.5 * (x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Edge:
