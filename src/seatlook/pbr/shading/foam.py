@@ -13,21 +13,38 @@ FOAM = Appearance(albedo=np.array([0.62, 0.57, 0.42]), roughness=0.95, f0=0.02)
 
 # The foam lies this far [m] below the cover, wherever the cover is this near.
 _BELOW, _NEAR = 0.003, 0.03
+_ROUNDS = 3  # to be below all panels that meet at an edge or a corner
 # Faces whose normals differ by more than 40 degrees meet in an edge.
 _EDGE_COSINE = np.cos(np.radians(40.0))
 
 
-def pressed(foam: Foam, cover: FloatArray, normals: FloatArray) -> FloatArray:
-    """Foam vertices (n, 3) moved inward to where the solved cover (k, 3) has pressed them.
+def pressed(foam: Foam, cover: Mesh) -> FloatArray:
+    """Foam vertices (n, 3) moved inward to where the solved cover has pressed them.
 
     The stored foam is at rest: drawn as it is, it would stick out of the cover that it carries.
+    Where panels meet, it goes below each of them: below the nearest alone, it would stick out of
+    the other beside a sharp edge.
     """
     x = np.array(foam.vertices)
-    distance, nearest = KDTree(cover).query(x)
-    n = normals[nearest]
-    out = ((x - cover[nearest]) * n).sum(axis=1) + _BELOW
-    move = np.where((distance < _NEAR) & (out > 0), out, 0.0)
-    return np.asarray(x - move[:, None] * n)
+    owner = np.full(len(cover.vertices), -1)
+    owner[cover.faces] = cover.panel[:, None]
+    panels = np.unique(cover.panel)
+    sides = cover.vertices[cover.faces] - cover.vertices[np.roll(cover.faces, 1, axis=1)]
+    longest = float(np.linalg.norm(sides, axis=2).max())
+    distance = np.full((len(panels), len(x)), np.inf)
+    nearest = np.zeros(distance.shape, dtype=np.int64)
+    for k, panel in enumerate(panels):
+        own = np.flatnonzero(owner == panel)
+        distance[k], place = KDTree(cover.vertices[own]).query(x, distance_upper_bound=_NEAR)
+        nearest[k] = own[np.minimum(place, len(own) - 1)]
+    # Of a panel the nearest vertex is known, which is up to an edge farther away than its face.
+    meet = np.isfinite(distance) & (distance <= distance.min(axis=0) + longest)
+    for _ in range(_ROUNDS):
+        for vertex, here in zip(nearest, meet, strict=True):
+            n = cover.normals[vertex]
+            out = ((x - cover.vertices[vertex]) * n).sum(axis=1) + _BELOW
+            x -= np.where(here & (out > 0), out, 0.0)[:, None] * n
+    return x
 
 
 def corner_normals(x: FloatArray, faces: IntArray) -> FloatArray:
@@ -58,7 +75,8 @@ def with_foam(mesh: Mesh, foam: Foam, panel: int, *, cover: int) -> Mesh:
     The first ``cover`` vertices press on the foam, the seam allowance behind them does not.
     """
     faces = np.array(foam.faces)
-    x = pressed(foam, mesh.vertices[:cover], mesh.normals[:cover])
+    own = (mesh.faces < cover).all(axis=1)
+    x = pressed(foam, mesh._replace(faces=mesh.faces[own], panel=mesh.panel[own]))
     n, k = len(mesh.vertices), faces.size
     return Mesh(
         np.vstack([mesh.vertices, x[faces.ravel()]]),
