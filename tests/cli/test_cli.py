@@ -234,7 +234,7 @@ def test_check_draws_the_start_beside_the_scene(own_demo, capsys):
     assert found["drawing"] == str(picture)
     assert str(picture) in said.err
     assert sorted(int(row["number"]) for row in found["ease"]) == list(range(1, 15))
-    assert [row["number"] for row in found["held"]] == ["H1", "H2", "F1", "F2", "F3", "F4"]
+    assert [row["number"] for row in found["held"]] == ["H1", "H2", "F1"]
     assert found["held"][0]["pulled_to"] == "trench_left"
     assert 30 < found["held"][0]["gap_mm"] < 50
     assert picture.read_bytes().startswith(b"\x89PNG")

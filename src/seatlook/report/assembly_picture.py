@@ -55,7 +55,7 @@ _PANELS = np.array(
         [0.70, 0.84, 0.84],
     ]
 )
-_TIES = 9  # of a seam that are drawn across its gap
+_FEWEST, _MOST, _APART = 9, 40, 0.06  # ties that are drawn of a line, and m between them
 
 
 def draw_assembly(
@@ -147,7 +147,8 @@ def _solid(foam: Foam) -> Body:
 def _strokes(line: StartLine) -> list[Stroke]:
     """Both sides of a line, and some of its ties."""
     colour = _colour(line)
-    chosen = np.unique(np.linspace(0, len(line.start) - 1, _TIES).astype(np.int64))
+    count = int(np.clip(line.length.sum() / _APART, _FEWEST, _MOST))
+    chosen = np.unique(np.linspace(0, len(line.start) - 1, count).astype(np.int64))
     ties = [
         Stroke(points=np.stack([line.start[k], line.end[k]]), colour=colour, width=1.0)
         for k in chosen
@@ -233,5 +234,5 @@ def _legend(lines: Sequence[StartLine], wrong: Sequence[Contradiction]) -> Pillo
 
 
 def _entry(line: StartLine) -> str:
-    gaps = f"{1e3 * line.gap:.0f} mm, up to {1e3 * line.gaps.max():.0f}"
-    return f"{line.name} to {line.target}: {gaps}" if line.target else f"{line.name}: {gaps}"
+    name = line.name if line.target in ("", line.name) else f"{line.name} to {line.target}"
+    return f"{name}: {1e3 * line.gap:.0f} mm, up to {1e3 * line.gaps.max():.0f}"
