@@ -41,11 +41,16 @@ def d3plot(
     strain_digit=False,
     in_plane=1,
     release="",
+    sph=0,
+    sph_flags=(11, 1, 1, 6, 1, 1, 1, 1, -6, 1, 2),
+    airbags=(),
 ):
     """Bytes of one file.
 
     ``states``: list of (time, positions, thickness (e,), inner (e, 6), outer (e, 6)).
     ``names``: number -> title. User numbers: nodes 1.., shells 101.., parts 11.. or ``ids``.
+    ``sph``: nodes of smoothed particles; ``airbags``: version, bags, chambered, numbers of geometry
+    and state variables, particles, state variables of a bag.
     ``history``, ``plastic``, ``thermal``: further words of a shell's row, filled with noise.
     """
     real = word.replace("i", "f")
@@ -63,6 +68,7 @@ def d3plot(
         21: int(velocity), 23: solids, 24: 1 if solids else 0, 27: 7, 28: beams, 30: 6,
         25: -1 if in_plane > 1 else 1, 31: e, 32: parts, 33: width, 35: history, 39: narbs,
         36: layers if deletion is None else -(10000 + layers),
+        37: sph, 54: 1000 * airbags[0] + airbags[1] if airbags else 0,
         43: 1000, 44: 1000, 45: 1000, 46: 1000 if thickness else 0, 51: parts,
         56: 100 * plastic + 1000 * thermal + 10000 * strain_digit,
     }  # fmt: skip
@@ -74,6 +80,8 @@ def d3plot(
         kinds = np.full(parts, 34)
         kinds[rigid_part - 1] = 20
         out.append(np.array([(~reported).sum(), parts, *kinds], dtype=word))
+    flags, lists, particle_values = _particles(sph, sph_flags, airbags)
+    out.append(np.array(flags, dtype=word))
     out.append(_floats(nodes, real, word))
     out.append(np.ones(9 * solids, dtype=word))
     out.append(np.ones(6 * beams, dtype=word))
@@ -83,6 +91,7 @@ def d3plot(
         runs = [np.arange(1, n + 1), 1 + np.arange(solids), 1 + np.arange(beams),
                 101 + np.arange(e), *[np.array(ids[:parts])] * 3]  # fmt: skip
         out += [r.astype(word) for r in runs]
+    out.append(np.ones(lists, dtype=word))
     out.append(_floats([END], real, word))
     if names:
         out += _titles(names, word)
@@ -103,9 +112,27 @@ def d3plot(
         pieces += [np.full(7 * solids + 6 * beams, 0.375), row.ravel()]
         if deletion is not None:
             pieces += [np.ones(solids), deletion, np.ones(beams)]
+        pieces.append(np.full(particle_values, 0.625))
         out.append(_floats(np.concatenate([np.ravel(p) for p in pieces]), real, word))
     out.append(_floats([END], real, word))
     return b"".join(a.tobytes() for a in out)
+
+
+def _particles(sph, sph_flags, airbags):
+    """Flags before the nodes, words behind the rigid bodies, words of a state."""
+    flags, lists, values = [], 0, 0
+    if sph:
+        flags += sph_flags[: sph_flags[0]]
+        lists += 2 * sph
+        values += sph * (1 + sum(map(abs, sph_flags[1:10])))
+        values += sph * sph_flags[10] if sph_flags[0] == 11 else 0
+    if airbags:
+        version, bags, geometry, variables, count, bag_state = airbags
+        flags += [geometry, variables, count, bag_state, *[2] * (version == 4)]
+        flags += [1] * (9 * (geometry + variables + bag_state))
+        lists += bags * geometry
+        values += bags * bag_state + count * variables
+    return flags, lists, values
 
 
 def _floats(values, real, word):

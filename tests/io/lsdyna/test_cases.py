@@ -94,11 +94,8 @@ def test_a_composite_part_does_not_stop_the_others():
     assert curvature("k/k7_composite.k", parts=[1])[0] == pytest.approx(-0.005, rel=1e-6)
 
 
-def test_a_parameter_is_refused_with_a_way_on(problems):
-    assert problems(wrinkle_states, DATA / "k" / "k11_parameter.k") == [
-        "k11_parameter.k:9: *SECTION_SHELL: got '&thick', expected a number (parameters are not "
-        "read: write the number here, or let LS-DYNA write a dynain)"
-    ]
+def test_a_parameter_stands_for_its_number():
+    assert curvature("k/k11_parameter.k")[0] == pytest.approx(-0.005, rel=1e-6)
 
 
 def test_a_flat_bag_is_not_bent_beside_itself():

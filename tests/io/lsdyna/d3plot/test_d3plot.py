@@ -182,7 +182,7 @@ def patched(at, value, dtype="<i4"):
         (patched(16, -5), "NUMNP: got -5, expected 0 or more"),
         (patched(20, 0), "IU: got no node positions in the states"),
         (patched(33, 44), "NV2D: got 44, expected 33 or 45 words per shell"),
-        (patched(37, 7), "NMSPH: got 7, expected no SPH nodes (this part of the format is not"),
+        (patched(37, 7), "ISPHFG: got"),
         (patched(51, 2**31 - 1), "NMMAT: got 2147483647, expected at most"),
         (patched(51, 76893465), "file: got a femzip archive"),
         (patched(15, 7), "NDIM: got 7, expected 3, 4, 5 or 8"),

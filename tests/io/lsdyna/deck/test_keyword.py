@@ -189,7 +189,7 @@ def test_no_strains_need_a_reference(write, problems):
         (("       1.2       1.2       1.2       1.2", "         0"),
          "d.k: thickness: got none for 2 shells of part 3 'Insert', first 7"),
         (("       1.2       1.2       1.2       1.2", "    &thick"),
-         "d.k:17: *SECTION_SHELL: got '&thick', expected a number (parameters are not read:"),
+         "d.k:17: *SECTION_SHELL: got '&thick', expected a number (*PARAMETER does not define"),
         (("         7         1         2", "         7         1         1"),
          "d.k:21: *INITIAL_STRAIN_SHELL: got '0.0025', expected a whole number"),
         (("         7         1         2", "         7       100         2"),

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError, Problem
+from seatlook.io.lsdyna.d3plot.particles import particles
 from seatlook.io.lsdyna.d3plot.row import refuse, shell_row
 
 END_MARK = -999999.0
@@ -96,9 +97,11 @@ def word_type(file: Path, head: bytes) -> str:
 def read_layout(file: Path, words: Words, word: str) -> Layout:
     """Read the control words and locate everything; ``words`` is the whole first file."""
     control = _control(file, words)
-    _refuse_what_is_not_followed(file, control)
+    _refuse_without_shells(file, control)
     material_types, rigid_shells, at = _material_types(file, words, control)
-    nodes = at + control["ialemat"]
+    flags = at + control["ialemat"]
+    grains = particles(file, words, flags, control)
+    nodes = flags + grains.flags
     shells = (
         nodes + 3 * control["numnp"] + 9 * abs(control["nel8"])
         + (2 * abs(control["nel8"]) if control["nel8"] < 0 else 0)
@@ -108,7 +111,7 @@ def read_layout(file: Path, words: Words, word: str) -> Layout:
     rigid_start = numbering + control["narbs"]
     table = _part(file, words, shells, 5 * control["nel4"], "shells").reshape(-1, 5)
     rigid, rigid_words = _rigid_bodies(file, words, rigid_start, control)
-    end = rigid_start + rigid_words + 2 * control["nadapt"] + _extra_nodes(control)
+    end = rigid_start + rigid_words + 2 * control["nadapt"] + grains.lists + _extra_nodes(control)
     _part(file, words, 0, end, "geometry")
     reported = _reported(file, control, table[:, 4], material_types, rigid_shells)
     row_start = 1 + control["nglbv"] + _node_words(control) + _before_shells(control)
@@ -126,7 +129,7 @@ def read_layout(file: Path, words: Words, word: str) -> Layout:
         reported=reported,
         row_count=int(reported.sum()),
         row_start=row_start,
-        state_words=rows_end + deleted + rigid,
+        state_words=rows_end + deleted + grains.state + rigid,
         alive_start=rows_end + abs(control["nel8"]) + control["nelth"]
         if control["maxint"] <= -10000
         else 0,
@@ -172,16 +175,8 @@ def _control(file: Path, words: Words) -> dict[str, int]:
     return control
 
 
-def _refuse_what_is_not_followed(file: Path, control: dict[str, int]) -> None:
-    """Name the parts that would move the shells and are not followed here."""
-    problems = [
-        Problem(key=name.upper(), got=str(control[name]), expected=f"no {what}", file=file,
-                hint="this part of the format is not read")
-        for name, what in (("nmsph", "SPH nodes"), ("npefg", "airbag particles"))
-        if control[name]
-    ]  # fmt: skip
-    if problems:
-        raise InputError(problems)
+def _refuse_without_shells(file: Path, control: dict[str, int]) -> None:
+    """Refuse a file without what is asked of it."""
     if not control["nel4"]:
         raise refuse(file, "shells", "none", "a result with shell elements")
     if not control["numnp"]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,10 @@ from seatlook.io.lsdyna.deck.placement import DECK, Placement
 from seatlook.model import FloatArray, IntArray
 
 LONG_WIDTH = 20
-_PARAMETER = "parameters are not read: write the number here, or let LS-DYNA write a dynain"
+_PARAMETER = (
+    "*PARAMETER does not define it; expressions are not read: "
+    "write the number here, or let LS-DYNA write a dynain"
+)
 _SHORT_EXPONENT = re.compile(rb"(?<=[0-9.])[dD]?(?=[+-]\d+$)")
 
 Bytes = npt.NDArray[np.bytes_]
@@ -32,6 +35,7 @@ class Block:
     width : of identity fields when the deck is not in standard format; 0 in standard format
     lines : (k,) int64      line of each card, from 1
     place : how *INCLUDE_TRANSFORM places the file that the block stands in
+    parameters : name in capitals -> its value as text, for fields with ``&name``
     """
 
     file: Path
@@ -41,6 +45,7 @@ class Block:
     cards: list[bytes]
     lines: list[int]
     place: Placement = DECK
+    parameters: Mapping[bytes, bytes] = field(default_factory=dict)
 
     def table(self, widths: Sequence[int], rows: slice = slice(None)) -> Table:
         """Read cards as columns of the given standard widths."""
@@ -81,17 +86,27 @@ class Table:
     def _one_by_one(self, text: Bytes, kind: Any) -> Any:
         """Convert with LS-DYNA's short exponents, and name the line that cannot be converted."""
         values = np.zeros(text.shape, dtype=kind)
-        for (row, column), field in np.ndenumerate(text):
+        for (row, column), word in np.ndenumerate(text):
             try:
-                number = float(_SHORT_EXPONENT.sub(b"e", field))
+                number = float(_SHORT_EXPONENT.sub(b"e", self._filled(word)))
                 values[row, column] = number
             except (ValueError, OverflowError) as error:
-                shown = field.decode("latin-1")
+                shown = word.decode("latin-1")
                 hint = _PARAMETER if "&" in shown else ""
                 raise self.problem(row, repr(shown), "a number", hint) from error
             if kind is np.int64 and number != int(number):
-                raise self.problem(row, repr(field.decode("latin-1")), "a whole number")
+                raise self.problem(row, repr(word.decode("latin-1")), "a whole number")
         return values
+
+    def _filled(self, word: bytes) -> bytes:
+        """Put the value of a parameter in the place of its name, as in &thick or -&thick."""
+        sign, mark, name = word.partition(b"&")
+        value = self.block.parameters.get(name.strip().upper())
+        if not mark or value is None or sign.strip() not in (b"", b"-"):
+            return word
+        if sign.strip() and value.startswith(b"-"):
+            return value[1:]
+        return sign.strip() + value
 
     def words(self, column: int) -> list[str]:
         """Return a column as text in capitals."""

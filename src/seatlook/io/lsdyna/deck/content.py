@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ from seatlook.errors import InputError
 from seatlook.io.lsdyna.deck.cards import Block, refuse
 from seatlook.io.lsdyna.deck.composite import composite_shells
 from seatlook.io.lsdyna.deck.includes import deck_blocks
+from seatlook.io.lsdyna.deck.parameters import parameters
 from seatlook.io.lsdyna.deck.parts import read_parts, read_sections
 from seatlook.io.lsdyna.deck.placement import shifted
 from seatlook.io.lsdyna.deck.transformation import Transformations, read_transformations
@@ -77,6 +78,9 @@ def read_deck(file: Path, *, length_unit: str) -> Deck:
             "file", got="no keyword on the first line", expected="a keyword deck", file=file
         )
     found = list(deck_blocks(file, content))
+    named = parameters(found)
+    if named:
+        found = [replace(block, parameters=named) for block in found]
     deck = Deck(read_transformations(found))
     for block in found:
         if block.name == "CONTROL_UNITS" and not block.place.moves:
