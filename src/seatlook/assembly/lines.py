@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from seatlook import mesh
 from seatlook.model import Anchor, FloatArray, Frame, Hook, IntArray, Points
@@ -76,16 +77,21 @@ class Course:
     before : (n + 1,) float64 [m]   length of the chain where the part of each line begins that is
                                     pulled, and where the last one ends
     stops : (n + 1,) float64 [m]    places along the curve that these points go to
+    smooth : whether the stretch of the lines changes gradually from one to the next
     """
 
     curve: FloatArray
     before: FloatArray
     stops: FloatArray
+    smooth: bool = False
 
     def targets(self, at: FloatArray) -> FloatArray:
         """Places (s, 3) [m] of points at lengths ``at`` (s,) along the chain."""
         arc = mesh.arc_length(self.curve)
         place = np.interp(at, self.before, self.stops)
+        if self.smooth:  # or the rings beside a junction would pull along the wire
+            inside = np.clip(at, self.before[0], self.before[-1])
+            place = PchipInterpolator(self.before, self.stops)(inside)
         return np.column_stack([np.interp(place, arc, column) for column in self.curve.T])
 
     def turned(self) -> Course:
@@ -144,6 +150,7 @@ def rings_on(lines: Sequence[Line], hook: Hook, wire: FloatArray, x: FloatArray)
     runs the way in which its places start nearer to the wire, and so does the wire.
     """
     way = course(lines, wire, hook.junctions, (hook.start, hook.end))
+    way = replace(way, smooth=len(lines) > 1)
     ways = (way,) if hook.junctions and len(lines) > 1 else (way, way.turned())
     way, lines = min(
         (_run(lines, w, x) for w in ways), key=lambda run: _start_misses(run[0], run[1], x)

@@ -99,7 +99,7 @@ def flatten(
     )
     if foam is None:
         made = flatten_surface(surface, out, **how)
-        note("no scene yet, as there is no foam: say --foam FILE")
+        note(f"no scene yet, as there is no foam: seatlook init --from {out} FOAM")
     else:
         made, scene = flatten_scene(
             surface, foam, out, flattening=how,

@@ -3,22 +3,31 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from seatlook.cli._mend import MendingOptions
 from seatlook.cli._output import Json, note, progress, table
+from seatlook.errors import InputError
 from seatlook.io.pattern.units import Units
 from seatlook.io.surface.axes import Unit, Up
 
+if TYPE_CHECKING:
+    from seatlook.chain.start.surface import FlattenedScene
+
 
 def init(
-    pattern: Annotated[Path, Parameter(help="Cover pattern: AAMA / ASTM D6673 DXF.")],
-    foam: Annotated[Path, Parameter(help="Foam: closed surface, OBJ, STL, PLY or glTF.")],
+    pattern: Annotated[
+        Path | None, Parameter(help="Cover pattern: AAMA / ASTM D6673 DXF; not with --from.")
+    ] = None,
     /,
+    foam: Annotated[
+        Path | None, Parameter(help="Foam: closed surface, OBJ, STL, PLY or glTF.")
+    ] = None,
     *,
-    out: Annotated[Path, Parameter(help="Folder for the new scene.")],
+    from_: Annotated[Path | None, Parameter(name="--from")] = None,
+    out: Annotated[Path | None, Parameter(help="Folder for the new scene.")] = None,
     unit: Unit | None = None,
     up: Up | None = None,
     mending: MendingOptions | None = None,
@@ -44,8 +53,13 @@ def init(
 
     Example: seatlook init cover.dxf foam.obj --out my-seat
 
+    Example: seatlook init --from pattern-folder foam.obj
+
     Parameters
     ----------
+    from_
+        Folder that "seatlook flatten" wrote: nothing is guessed. The foam may lie in it as foam.obj
+        and the wires as wires.toml; the scene is written there if --out is not given.
     unit
         Unit of the foam's file; by its format and size if not given.
     up
@@ -76,8 +90,21 @@ def init(
         Write over a scene that is in the folder already.
     """
     from seatlook.chain.start import init as start
+    from seatlook.chain.start import scene_from
     from seatlook.chain.start.scene_file import hook_words
 
+    if from_ is not None:
+        made = scene_from(
+            from_, foam or pattern, out,
+            foam_unit=unit, foam_up=up, foam_mending=(mending or MendingOptions()).choices(),
+            material=material, foam_material=foam_material, wires=wires, force=force,
+        )  # fmt: skip
+        _show_ties(made, json=json)
+        return
+    if pattern is None or foam is None or out is None:
+        raise InputError.single(
+            "init", got="too little", expected="PATTERN FOAM --out FOLDER, or --from FOLDER"
+        )
     with progress() as show:
         show("lay out")
         first = start(
@@ -102,3 +129,11 @@ def init(
         f"  seatlook check {first.scene}",
         f"  seatlook evaluate {first.scene} --out {out / 'gallery'}",
     )
+
+
+def _show_ties(made: FlattenedScene, *, json: bool) -> None:
+    """Print what the cover of a flattened surface is pulled to, and how to go on."""
+    rows = [(h.name, " + ".join(h.lines), h.wire) for h in made.draft.hooks]
+    rows += [(f.name, " + ".join(f.edges), f.curve) for f in made.draft.frames]
+    table(("tie", "lines", "to"), rows, json=json)
+    note(*made.notes)

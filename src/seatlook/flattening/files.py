@@ -10,14 +10,13 @@ from typing import TypedDict, Unpack
 
 from seatlook import io
 from seatlook.errors import InputError
-from seatlook.files import write_text
 from seatlook.flattening.cutting import cut_along, opened
 from seatlook.flattening.flatten import Flattened, flatten
+from seatlook.flattening.lie import Lie, lie_of, write_lie
 from seatlook.flattening.strain_map import write_strain_maps
 from seatlook.flattening.surface import DesignSurface
 from seatlook.io.surface.axes import Unit, Up
-from seatlook.io.toml import toml_key
-from seatlook.model import Fabric, Pose
+from seatlook.model import Fabric
 
 PATTERN, SEAMS, PLACEMENT = "pattern.dxf", "seams.toml", "placement.toml"
 PANELS = "panels.obj"
@@ -45,10 +44,10 @@ class FlattenChoices(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlattenedFiles:
-    """A design surface, its pattern, and the pictures of the strain left in the panels."""
+    """A flattened pattern, how it lies on the surface, and pictures of the strain left in it."""
 
-    form: DesignSurface
     flat: Flattened
+    lie: Lie
     pictures: tuple[Path, ...]
 
 
@@ -80,9 +79,10 @@ def flatten_surface(
     )
     write_panels(form, folder / PANELS)
     write_flat_pattern(flat, folder)
-    write_text(folder / PLACEMENT, placement_tables(flat.placement) + "\n")
+    lie = lie_of(form, flat)
+    write_lie(lie, folder / PLACEMENT)
     _write_seam_lengths(flat, folder / "seam-lengths.csv")
-    return FlattenedFiles(form=form, flat=flat, pictures=write_strain_maps(form, flat, folder))
+    return FlattenedFiles(flat=flat, lie=lie, pictures=write_strain_maps(form, flat, folder))
 
 
 def read_design(
@@ -111,16 +111,6 @@ def write_flat_pattern(flat: Flattened, out: Path) -> None:
     """Write ``pattern.dxf`` and ``seams.toml``."""
     io.write_dxf(flat.pattern, out / PATTERN, style="seatlook")
     io.write_seams(flat.pattern, out / SEAMS)
-
-
-def placement_tables(placement: Mapping[str, Pose]) -> str:
-    """[placement.PANEL] tables as they stand in a scene."""
-    return "\n\n".join(
-        f"[placement.{toml_key(name)}]\n"
-        f"rotation = {pose.rotation.tolist()}\n"
-        f"translation_mm = {(1e3 * pose.translation).tolist()}"
-        for name, pose in placement.items()
-    )
 
 
 def _write_seam_lengths(flat: Flattened, path: Path) -> None:

@@ -24,21 +24,23 @@ from seatlook.chain.start.scene_file import (
     refuse_scene,
     write_scene,
 )
-from seatlook.flattening.border import borders
+from seatlook.errors import InputError
 from seatlook.flattening.files import (
     PANELS,
     PATTERN,
+    PLACEMENT,
     SEAMS,
     FlattenChoices,
     FlattenedFiles,
     flatten_surface,
 )
-from seatlook.flattening.pattern import pair
-from seatlook.flattening.surface import DesignSurface, sides
+from seatlook.flattening.lie import Lie, read_lie
 from seatlook.io.surface.axes import Unit, Up
+from seatlook.io.surface.formats import READERS
 from seatlook.mesh.mending.mend import AS_IT_IS, Mending
-from seatlook.model import FloatArray, Frame, Pose
+from seatlook.model import Frame
 
+WIRES = "wires.toml"
 NEAREST_WIRE = 0.030  # m from a seam of the design to the wire it is hooked to
 
 
@@ -127,7 +129,7 @@ def flatten_scene(
     refuse_scene(folder, force=choices.get("force", False))
     filling = foam_file(Path(foam), **choices)
     made = flatten_surface(surface, folder, **(flattening or {}))
-    return made, scene_over(made.form, made.flat.placement, filling, folder, **choices)
+    return made, _scene_of(made.lie, filling, folder, folder, choices)
 
 
 def foam_file(foam: Path, **choices: Unpack[SceneChoices]) -> FoamFile:
@@ -142,38 +144,73 @@ def foam_file(foam: Path, **choices: Unpack[SceneChoices]) -> FoamFile:
     )
 
 
-def scene_over(
-    form: DesignSurface,
-    poses: Mapping[str, Pose],
-    foam: FoamFile,
-    folder: Path,
+def scene_from(
+    folder: Path | str,
+    foam: Path | str | None = None,
+    out: Path | str | None = None,
     **choices: Unpack[SceneChoices],
 ) -> FlattenedScene:
-    """Write the scene of a surface whose pattern lies in a folder already; see ``flatten_scene``.
+    """Write the scene of a surface that was flattened into a folder before.
 
     Parameters
     ----------
-    form : the design surface
-    poses : where the flat panels start
+    folder : with what :func:`seatlook.flattening.files.flatten_surface` left
+    foam : file; None takes ``foam.obj``, ``.stl``, ``.ply`` or ``.glb`` of the folder; a file
+        ``wires.toml`` there counts if no wires are given
+    out : folder of the scene; None takes the same
+
+    Raises
+    ------
+    InputError
+        Files that are missing or cannot be read, a folder with a scene in it.
     """
+    home = Path(folder)
+    there = home if out is None else Path(out)
+    refuse_scene(there, force=choices.get("force", False))
+    for name in (PATTERN, SEAMS, PLACEMENT):
+        if not (home / name).exists():
+            raise InputError.single(
+                "--from", got=f"a folder without {name}", expected="one that flatten wrote",
+                file=home,
+            )  # fmt: skip
+    lie = read_lie(home / PLACEMENT)
+    if choices.get("wires") is None and (home / WIRES).exists():
+        choices["wires"] = home / WIRES
+    filling = foam_file(_foam_in(home) if foam is None else Path(foam), **choices)
+    return _scene_of(lie, filling, home, there, choices)
+
+
+def _foam_in(folder: Path) -> Path:
+    """The foam that lies in a folder."""
+    files = [folder / f"foam{ending}" for ending in READERS]
+    found = [file for file in files if file.exists()]
+    if len(found) != 1:
+        got = f"{len(found)} of {', '.join(file.name for file in files)}"
+        raise InputError.single("foam", got=got, expected="one, or its file", file=folder)
+    return found[0]
+
+
+def _scene_of(
+    lie: Lie, foam: FoamFile, home: Path, folder: Path, choices: SceneChoices
+) -> FlattenedScene:
+    """Write into a folder the scene of a pattern at home in another."""
     material = choices.get("material", MATERIAL)
     size = element_size(io.read_material(material).fabric, foam.body.material)
-    around, wires = borders(form), foam.body.curves
     draft = SceneDraft(
         name=choices.get("name", folder.resolve().name),
-        pattern=folder / PATTERN,
-        seams=folder / SEAMS,
+        pattern=home / PATTERN,
+        seams=home / SEAMS,
         material=material,
         panels=choices.get("panels", MappingProxyType({})),
         foam=foam,
-        curves={border.name: border.curve for border in around},
-        design=folder / PANELS,
-        hooks=hooks_beside(_seam_lines(form), wires, reach=NEAREST_WIRE, stage=HOOK),
+        curves={border.name: border.curve for border in lie.borders},
+        design=home / PANELS if (home / PANELS).exists() else None,
+        hooks=hooks_beside(lie.seams, foam.body.curves, reach=NEAREST_WIRE, stage=HOOK),
         frames=tuple(
             Frame(name=b.name, edges=b.edges, curve=b.name, stage=COVER, junctions=b.junctions)
-            for b in around
+            for b in lie.borders
         ),
-        poses=poses,
+        poses=lie.poses,
         element_size_mm=choices.get("element_size_mm") or size,
         seed=choices.get("seed", 0),
         textures=choices.get("textures", TEXTURES),
@@ -181,10 +218,3 @@ def scene_over(
         remarks=choices.get("remarks", ()),
     )
     return FlattenedScene(scene=write_scene(draft, folder), draft=draft)
-
-
-def _seam_lines(form: DesignSurface) -> dict[str, FloatArray]:
-    """Where each seam runs on the design surface, (k, 3) [m]."""
-    all_sides = sides(form.patches())
-    points = {side.name: form.vertices[side.vertices] for side in all_sides}
-    return {seam.name: points[seam.a] for seam in pair(all_sides, form.seam_lines)}

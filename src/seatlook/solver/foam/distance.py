@@ -141,7 +141,11 @@ def _built(vertices: FloatArray, faces: IntArray, spacing: float, margin: float)
 def _inside(
     vertices: FloatArray, faces: IntArray, grid: FloatArray, shape: tuple[int, ...]
 ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """Nodes around which the surface winds once or more."""
+    """Nodes around which the surface winds once or more.
+
+    Where it passes through itself, as in the pocket of a button, it may wind the other way: that is
+    outside.
+    """
     winding = np.zeros(shape, dtype=np.int32)
     kernel.count_crossings(vertices, faces, grid, winding)
     np.cumsum(winding, axis=2, out=winding)
@@ -151,6 +155,6 @@ def _inside(
             got=f"a surface that leaves {np.count_nonzero(winding[:, :, -1])} vertical lines open",
             expected="a closed surface with consistent normals",
         )
-    if winding.min() < 0:
+    if np.count_nonzero(winding < 0) > np.count_nonzero(winding > 0):
         raise InputError.single("foam", got="normals pointing inward", expected="outward normals")
     return np.asarray(winding > 0)
