@@ -46,7 +46,7 @@ def test_bad_files_say_why(tmp_path):
     write_exr(np.ones((64, 64, 3), dtype=np.float32), path)
     path.write_bytes(path.read_bytes()[:300])
     assert refused(path).endswith("expected a whole OpenEXR picture")
-    assert refused(tmp_path / "none.exr").endswith("expected a whole OpenEXR picture")
+    assert refused(tmp_path / "none.exr") == "none.exr: file: got no such file, expected a file"
     write_exr(np.full((4, 4, 3), np.nan, dtype=np.float32), path)
     assert refused(path) == "a.exr: picture: got nan or inf, expected finite values"
     plane = np.ones((4, 4), dtype=np.float32)

@@ -24,6 +24,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
+_LONGEST_WORD, _MOST_NAMES = 60, 500  # for which a likeness is sought
+
 
 class SeatlookError(Exception):
     """Base of all errors; ``exit_code`` is what the command line returns."""
@@ -119,5 +121,9 @@ def did_you_mean(word: str, choices: Iterable[str]) -> str:
     >>> did_you_mean("roughnes", ["albedo", "roughness"])
     "did you mean 'roughness'?"
     """
-    close = difflib.get_close_matches(word, list(choices), n=1)
+    names = list(choices)
+    # The time goes with the product of the lengths and with the number.
+    if len(word) > _LONGEST_WORD or len(names) > _MOST_NAMES:
+        return ""
+    close = difflib.get_close_matches(word, names, n=1)
     return f"did you mean {close[0]!r}?" if close else ""

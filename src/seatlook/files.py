@@ -1,16 +1,195 @@
-"""Writing files so that an interrupted run leaves the old file or the new one, never half.
+"""Files from elsewhere are read with care, files of our own written whole.
 
-And where what can be made again is kept between runs.
+An interrupted run leaves the old file or the new one, never half. And where what can be made again
+is kept between runs.
 """
 
 from __future__ import annotations
 
+import codecs
+import functools
 import hashlib
 import os
+import stat
 import tempfile
-from collections.abc import Iterable, Iterator
+import traceback
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from io import BufferedReader
 from pathlib import Path
+from typing import ParamSpec, TypeVar
+
+from seatlook.errors import InputError, SeatlookError
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+MIB = 2**20
+# Bytes of a file that is read at once; docs/reference/limits.md lists all limits.
+LARGEST_FILE = 512 * MIB
+LARGEST_TEXT = 4 * MIB  # of scenes, seams, curves, materials, sweeps, votes
+
+
+def reader(expected: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Make a function of a file a reader: whatever it stumbles over is an InputError.
+
+    Parameters
+    ----------
+    expected : what the file should be, for messages
+
+    Notes
+    -----
+    Libraries raise whatever they stumble over in a damaged file, and so do NumPy and Python: of
+    sizes that no memory holds, of things in things in things. Warnings that were made errors pass.
+
+    Examples
+    --------
+    >>> @reader("a number")
+    ... def read_number(path: Path) -> float:
+    ...     return float("x")
+    >>> read_number(Path("a.txt"))
+    Traceback (most recent call last):
+    seatlook.errors.InputError: a.txt: file: got ValueError: could not convert string to float: \
+'x', expected a number
+    """
+
+    def wrap(read: Callable[P, T]) -> Callable[P, T]:
+        @functools.wraps(read)
+        def wrapped(*args: P.args, **kwargs: P.kwargs) -> T:
+            try:
+                return read(*args, **kwargs)
+            except (SeatlookError, Warning):
+                raise
+            except Exception as error:
+                file = Path(str(next(iter((*args, *kwargs.values())))))
+                raise InputError.single(
+                    "file", got=_stumbled(error), expected=expected, file=file, hint=_where(error)
+                ) from error
+
+        wrapped.is_reader = True  # type: ignore[attr-defined]
+        return wrapped
+
+    return wrap
+
+
+def _stumbled(error: Exception) -> str:
+    """What a reader stumbled over, in one line."""
+    if isinstance(error, RecursionError):
+        return "things in things in things, too deep to follow"
+    if isinstance(error, MemoryError):
+        return "more than there is memory for"
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    text = " ".join(str(error).split())
+    return f"{type(error).__name__}: {text}"[:300]
+
+
+def _where(error: Exception) -> str:
+    """Place in seatlook where a reader stumbled; nothing where the message says all."""
+    if isinstance(error, RecursionError | MemoryError | OSError):
+        return ""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if "seatlook" in f.filename]
+    return f"in {frames[-1].name}, {Path(frames[-1].filename).name}" if frames[1:] else ""
+
+
+@contextmanager
+def opened(
+    path: Path, *, key: str = "file", at_most: int | None = None
+) -> Iterator[BufferedReader]:
+    """Open a file for reading that may be anything.
+
+    Parameters
+    ----------
+    key : who names the file, for messages
+    at_most : bytes; None: any size
+
+    Raises
+    ------
+    InputError
+        There is no such file, it is a folder, a pipe or a device, may not be read, is too large, or
+        was changed while it was open.
+    """
+
+    def refusal(got: object, expected: str, hint: str = "") -> InputError:
+        return InputError.single(key, got=got, expected=expected, file=path, hint=hint)
+
+    # Opening a pipe would wait for whoever writes to it.
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    try:
+        _check_regular(path.stat(), refusal)
+        stream = os.fdopen(os.open(path, flags), "rb")
+    except FileNotFoundError as error:
+        raise refusal("no such file", "a file") from error
+    except InputError:
+        raise
+    # ValueError: a name that no file can have, with a null character or half a pair.
+    except (OSError, ValueError) as error:
+        raise refusal(getattr(error, "strerror", error), "a file") from error
+    with stream:
+        before = os.fstat(stream.fileno())
+        state = state_of(path)
+        _check_regular(before, refusal)
+        if at_most is not None and before.st_size > at_most:
+            got = f"{before.st_size / MIB:,.0f} MiB"
+            raise refusal(got, f"at most {at_most / MIB:,.0f} MiB")
+        yield stream
+        if state_of(path) != state:
+            raise refusal("a file that changes while it is read", "one that stays", "try again")
+
+
+def state_of(path: Path) -> tuple[int, int, int] | None:
+    """What tells that a file is another one than before; None: it is gone."""
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
+def _check_regular(status: os.stat_result, refusal: Callable[[object, str], InputError]) -> None:
+    kinds = {
+        stat.S_IFDIR: "a folder",
+        stat.S_IFIFO: "a pipe",
+        stat.S_IFSOCK: "a socket",
+        stat.S_IFCHR: "a device",
+        stat.S_IFBLK: "a device",
+    }
+    kind = stat.S_IFMT(status.st_mode)
+    if kind != stat.S_IFREG:
+        raise refusal(kinds.get(kind, "no file"), "a file")
+
+
+def read_file(path: Path, *, key: str = "file", at_most: int = LARGEST_FILE) -> bytes:
+    """Return the content of a file, see ``opened``."""
+    with opened(path, key=key, at_most=at_most) as stream:
+        return stream.read()
+
+
+def read_text(path: Path, *, key: str = "file", at_most: int = LARGEST_TEXT) -> str:
+    """Return the text of a UTF-8 file, without the mark of byte order that editors put before it.
+
+    Raises
+    ------
+    InputError
+        As ``opened``, and for another encoding, with the line.
+    """
+    return decoded(read_file(path, key=key, at_most=at_most), path)
+
+
+def decoded(content: bytes, path: Path) -> str:
+    """Return UTF-8 content as text; see ``read_text``."""
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        wide = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        raise InputError.single(
+            "encoding",
+            got="UTF-16" if wide else f"byte {content[error.start]:#x}",
+            expected="UTF-8",
+            file=path,
+            line=content[: error.start].count(b"\n") + 1,
+            hint="save it as UTF-8",
+        ) from error
 
 
 @contextmanager

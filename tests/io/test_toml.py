@@ -119,13 +119,15 @@ def test_missing_file(tmp_path, problems):
 
 def test_folder_instead_of_file(tmp_path, problems):
     (message,) = problems(read_document, tmp_path)
-    assert message.endswith("file: got Is a directory, expected a readable file")
+    assert message.endswith("file: got a folder, expected a file")
 
 
 def test_not_utf8(tmp_path, problems):
     path = tmp_path / "a.toml"
     path.write_bytes(b"a = 1\nb = '\xe9'\n")
-    assert problems(read_document, path) == ["a.toml:2: encoding: got byte 0xe9, expected UTF-8"]
+    assert problems(read_document, path) == [
+        "a.toml:2: encoding: got byte 0xe9, expected UTF-8 (save it as UTF-8)"
+    ]
 
 
 KEYS = {

@@ -32,7 +32,7 @@ def waved_sheet(path, side=SIDE):
 # The command, with what it has used when the four maps are written.
 COMMAND = """
 import resource, sys
-from seatlook.cli import main
+from seatlook.__main__ import main
 from seatlook.chain import shell_maps
 
 next_step = shell_maps.write_elements

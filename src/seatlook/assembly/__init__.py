@@ -13,8 +13,9 @@ from seatlook.assembly.builder import Builder
 from seatlook.assembly.digest import content_digest
 from seatlook.assembly.hem import hem_of
 from seatlook.assembly.placing import with_poses
-from seatlook.errors import AssemblyError, Problem
+from seatlook.errors import AssemblyError, InputError, Problem
 from seatlook.model import Cover, FloatArray, Hook, IntArray, Panel, Scene, criteria_of
+from seatlook.model.scene import ELEMENT_SIZES, LARGEST_SEED
 from seatlook.model.zones import zones
 
 # Wavelengths [m] of a cut panel's unevenness: from the shortest wrinkle of a cover on its foam to
@@ -92,6 +93,14 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
 def with_mesh(scene: Scene, *, element_size: float | None = None, seed: int | None = None) -> Scene:
     """Put another element size [m] and seed into a scene; panels' own sizes scale with it."""
     size = scene.element_size if element_size is None else element_size
+    finest, coarsest = ELEMENT_SIZES
+    if not finest <= size <= coarsest:
+        raise InputError.single(
+            "element_size_mm", got=f"{1e3 * size:g}",
+            expected=f"{1e3 * finest:g} to {1e3 * coarsest:g}",
+        )  # fmt: skip
+    if seed is not None and not 0 <= seed <= LARGEST_SEED:
+        raise InputError.single("seed", got=seed, expected=f"0 to {LARGEST_SEED}")
     scale = size / scene.element_size
     return replace(
         scene,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -21,7 +22,7 @@ from seatlook.chain.choose import Look, camera_of, look_of, narrowed, rig_of
 from seatlook.chain.draw import map_ends
 from seatlook.chain.files import earlier_result, of_scene
 from seatlook.chain.timeline import solve_in_stages
-from seatlook.errors import InputError
+from seatlook.errors import InputError, SolverError
 from seatlook.model import (
     Appearance,
     Camera,
@@ -143,11 +144,12 @@ class Case:
         if self._solution is None:
             progress("mesh")
             cover = self.cover
-            self._solution = solve(
-                cover,
-                settings=settings or SolverSettings(),
-                progress=lambda **figures: progress("solve", **figures),
-            )
+            with mesh_in_memory(cover):
+                self._solution = solve(
+                    cover,
+                    settings=settings or SolverSettings(),
+                    progress=lambda **figures: progress("solve", **figures),
+                )
         if path is not None:
             io.write_result(self._solution, path)
         return self._solution
@@ -161,13 +163,14 @@ class Case:
         progress: Progress = silent,
     ) -> Solution:
         """Solve, and keep the state at the end of every stage, see ``chain.timeline``."""
-        self._solution = solve_in_stages(
-            self.cover,
-            folder,
-            again_from=again_from,
-            resume=resume,
-            progress=lambda **figures: progress("solve", **figures),
-        )
+        with mesh_in_memory(self.cover):
+            self._solution = solve_in_stages(
+                self.cover,
+                folder,
+                again_from=again_from,
+                resume=resume,
+                progress=lambda **figures: progress("solve", **figures),
+            )
         return self._solution
 
     def reuse(self, path: Path) -> bool:
@@ -355,3 +358,23 @@ def export(assessment: Assessment, path: Path) -> Path:
     drawn = pbr.bake_grain(solution) if path.suffix.lower() == ".glb" else solution
     io.export_cover(drawn, assessment.fields, path)
     return path
+
+
+@contextmanager
+def mesh_in_memory(cover: Cover) -> Iterator[None]:
+    """Say what size of mesh takes less, where the memory ends inside.
+
+    Raises
+    ------
+    SolverError
+        Instead of MemoryError.
+    """
+    try:
+        yield
+    except MemoryError as error:
+        size, count = 1e3 * cover.element_size, len(cover.faces)
+        tried = f" ({error})" if str(error) else ""
+        raise SolverError(
+            f"out of memory{tried}: {count} triangles of {size:.3g} mm; a coarser mesh takes less, "
+            f"as --element-size-mm {2 * size:.3g} with about {count // 4}"
+        ) from error

@@ -19,9 +19,9 @@ from seatlook.cli import (
     _sweep,
     _wrinkle,
 )
-from seatlook.cli._app import app, main, run
+from seatlook.cli._app import app, run
 
-__all__ = ["app", "main", "run"]
+__all__ = ["app", "run"]
 
 app.command(_demo.demo)
 app.command(_flatten.flatten)

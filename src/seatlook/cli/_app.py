@@ -12,9 +12,10 @@ from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError
 
+from seatlook._interrupt import EXIT_CODE, asked
 from seatlook._version import __version__
-from seatlook.cli._output import manner, say
-from seatlook.errors import SeatlookError
+from seatlook.cli._output import drop_output, manner, say
+from seatlook.errors import SeatlookError, SolverError
 
 _HELP = """Where a car-seat cover wrinkles, why, and whether anyone will see it.
 
@@ -24,15 +25,19 @@ Any command takes --quiet: no progress and no notes, only data and what went wro
 heeded. Exit codes: 0 good, 1 a limit is missed, 2 wrong input, 3 solver or renderer failed.
 """
 
+_OUT_OF_MEMORY = (
+    "out of memory: a coarser mesh takes less, twice its --element-size-mm about a quarter; "
+    "a smaller picture as well"
+)
 _KEPT = "the same command with --resume takes the result, if it was solved already"
 _AGAIN = "the same command again goes on where it was: what is done is kept"
 # verb -> how an interrupted run goes on
 _GO_ON = {
-    "demo": (_KEPT,),
-    "evaluate": (_KEPT,),
-    "solve": ("with --stages a run keeps its stages, and --resume goes on after the last one",),
-    "compare": (_AGAIN,),
-    "sweep": (_AGAIN,),
+    "demo": _KEPT,
+    "evaluate": _KEPT,
+    "solve": "with --stages a run keeps its stages, and --resume goes on after the last one",
+    "compare": _AGAIN,
+    "sweep": _AGAIN,
 }
 
 app = App(
@@ -43,11 +48,6 @@ app = App(
     sort_key=None,
     suppress_keyboard_interrupt=False,
 )
-
-
-def main() -> None:
-    """Run the command line and leave with its exit code."""
-    sys.exit(run())
 
 
 def run(tokens: Sequence[str] | None = None) -> int:
@@ -64,15 +64,30 @@ def run(tokens: Sequence[str] | None = None) -> int:
     except SeatlookError as error:
         say(str(error))
         return error.exit_code
-    except KeyboardInterrupt:
-        say(
-            "interrupted; no file was left half written", *_GO_ON.get(words[0] if words else "", ())
-        )
-        return 130
-    except OSError as error:
+    # The library that prints help exits where its reader has gone.
+    except (BrokenPipeError, SystemExit):
+        drop_output()
+        return 0
+    except (Exception, KeyboardInterrupt) as error:
+        return _failed(error, words)
+    return code if isinstance(code, int) else 0
+
+
+def _failed(error: BaseException, words: Sequence[str]) -> int:
+    """Say why a command ended where nobody foresaw it, and return the exit code."""
+    # Compiled code makes another error of an interrupt.
+    if isinstance(error, KeyboardInterrupt) or asked():
+        go_on = _GO_ON.get(words[0] if words else "")
+        say("; ".join(filter(None, ("interrupted", "no file was left half written", go_on))))
+        return EXIT_CODE
+    if isinstance(error, MemoryError):
+        say(f"{_OUT_OF_MEMORY} ({error})" if str(error) else _OUT_OF_MEMORY)
+        return SolverError.exit_code
+    if isinstance(error, OSError):
         say(f"{error.filename or 'file system'}: {error.strerror or error}")
         return 2
-    except Exception:
-        say(traceback.format_exc(), "this is a fault of seatlook, not of the input")
-        return 70
-    return code if isinstance(code, int) else 0
+    say(
+        "".join(traceback.format_exception(error)),
+        "this is a fault of seatlook, not of the input",
+    )
+    return 70

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import sys
-
 from cyclopts import App
 
-from seatlook.cli._output import Json, note, say, table
+from seatlook.cli._output import Json, note, say, table, write
 from seatlook.errors import NoOffscreenContext
 
 materials = App(name="materials", help="List the supplied materials, or show one.")
@@ -44,7 +42,7 @@ def show_material(name: str, /) -> None:
     """
     from seatlook.io.material import material_path
 
-    sys.stdout.write(material_path(name).read_text(encoding="utf-8"))
+    write(material_path(name).read_text(encoding="utf-8"))
 
 
 def doctor(*, json: Json = False) -> int:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json as json_module
+import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Annotated, Any, Protocol
 
@@ -30,25 +31,52 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[Any]], *, json: bool) ->
         pairs = tuple(heads) == ("what", "value")
         objects = [dict(zip(heads, row, strict=True)) for row in rows]
         data = {row[0]: row[1] for row in rows} if pairs else objects
-        sys.stdout.write(json_module.dumps(data, indent=1) + "\n")
+        show_json(data)
         return
     cells = [list(heads), *([_text(cell) for cell in row] for row in rows)]
     widths = [max(len(row[k]) for row in cells) for k in range(len(heads))]
-    for row in cells:
-        line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-        sys.stdout.write(line.rstrip() + "\n")
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in cells
+    ]
+    write("\n".join(lines) + "\n")
 
 
 def print_rows(rows: Sequence[Mapping[str, Any]]) -> None:
     """Print a further table, after an empty line; nothing where there is none."""
     if rows:
-        sys.stdout.write("\n")
+        write("\n")
         table(tuple(rows[0]), [tuple(row.values()) for row in rows], json=False)
 
 
 def show_json(data: Any) -> None:
     """Write data that is no single table to stdout."""
-    sys.stdout.write(json_module.dumps(data, indent=1) + "\n")
+    write(json_module.dumps(data, indent=1) + "\n")
+
+
+def write(text: str) -> None:
+    """Write data to stdout; nothing more once its reader has gone, as behind ``| head``.
+
+    Raises
+    ------
+    OSError
+        It cannot be written, because the disk is full.
+    """
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        drop_output()
+    except OSError as error:
+        drop_output()
+        raise OSError(error.errno, error.strerror, "stdout") from error
+
+
+def drop_output() -> None:
+    """Write nothing to stdout any more, nor what is left in its buffer at the end."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
 
 
 @dataclass
@@ -69,8 +97,9 @@ def note(*lines: str) -> None:
 
 def say(*lines: str) -> None:
     """Write lines to stderr that must be read."""
-    for line in lines:
-        sys.stderr.write(line.rstrip() + "\n")
+    with suppress(BrokenPipeError):
+        for line in lines:
+            sys.stderr.write(line.rstrip() + "\n")
 
 
 @contextmanager

@@ -7,18 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
-from seatlook.files import write_text
-from seatlook.io.schema import MM, Array, Kind, Named, Table, read_table
+from seatlook.files import reader, write_text
+from seatlook.io.schema import Kind, Named, Table, place_mm, read_table
 from seatlook.io.toml import quoted, read_document
 from seatlook.model import FloatArray
 
 _KEYS: dict[str, Kind] = {
-    "curve": Named(
-        Table({"points_mm": Array(shape=(None, 3), scale=MM, required=True)}), required=True
-    )
+    "curve": Named(Table({"points_mm": place_mm(3, many=True)}), required=True)
 }
 
 
+@reader("a file of curves")
 def read_curves(path: Path) -> dict[str, FloatArray]:
     """Read ``[curve.NAME] points_mm = [[x, y, z], ...]``.
 

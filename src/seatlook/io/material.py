@@ -12,11 +12,14 @@ from typing import Any
 import numpy as np
 
 from seatlook.errors import InputError, did_you_mean
+from seatlook.files import reader
 from seatlook.io.colour import Colour
-from seatlook.io.schema import MM, Array, Kind, Number, Table, Text, read_table, shown
+from seatlook.io.schema import MM, THRESHOLD, Array, Kind, Number, Table, Text, read_table, shown
 from seatlook.io.texture_maps import read_texture_maps
 from seatlook.io.toml import Document, Key, read_document
 from seatlook.model import Appearance, Curve, Fabric, FoamMaterial, Material, TextureMaps
+
+_SOFTEST, _STIFFEST = 1e-3, 1e9  # N/m
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,10 +31,11 @@ class _StiffnessCurve:
 
     def read(self, document: Document, key: Key, value: Any) -> Curve | None:
         if not isinstance(value, dict):
-            stiffness = Number(above=0).read(document, key, value)
+            stiffness = Number(low=_SOFTEST, high=_STIFFEST).read(document, key, value)
             return None if stiffness is None else Curve.linear(stiffness)
-        knots = Array(shape=(None,), low=0.0, required=True)
-        row = Table({"strain": knots, "stiffness": knots}).read(document, key, value)
+        strain = Array(shape=(None,), low=0.0, high=10.0, required=True)
+        stiffnesses = Array(shape=(None,), low=_SOFTEST, high=_STIFFEST, required=True)
+        row = Table({"strain": strain, "stiffness": stiffnesses}).read(document, key, value)
         if row["strain"] is None or row["stiffness"] is None:
             return None
         try:
@@ -42,8 +46,8 @@ class _StiffnessCurve:
 
 
 _FABRIC: dict[str, Kind] = {
-    "thickness_mm": Number(above=0, high=20, scale=MM, required=True),
-    "density_kg_per_m2": Number(above=0, high=20, required=True),
+    "thickness_mm": Number(low=0.01, high=20, scale=MM, required=True),
+    "density_kg_per_m2": Number(low=1e-3, high=20, required=True),
     "warp_n_per_m": _StiffnessCurve(required=True),
     "weft_n_per_m": _StiffnessCurve(required=True),
     "shear_n_per_m": _StiffnessCurve(required=True),
@@ -51,12 +55,12 @@ _FABRIC: dict[str, Kind] = {
     "weft_unloading_n_per_m": _StiffnessCurve(),
     "poisson": Number(low=-2, high=2, required=True),
     "compression_ratio": Number(above=0, high=1, required=True),
-    "bending_warp_n_m": Number(above=0, high=1, required=True),
-    "bending_weft_n_m": Number(above=0, high=1, required=True),
-    "bending_twist_n_m": Number(above=0, high=1, required=True),
+    "bending_warp_n_m": Number(low=1e-10, high=1, required=True),
+    "bending_weft_n_m": Number(low=1e-10, high=1, required=True),
+    "bending_twist_n_m": Number(low=1e-10, high=1, required=True),
     "bending_poisson": Number(low=-2, high=2, required=True),
-    "c_threshold_per_mm": Number(above=0, scale=1 / MM),
-    "first_wrinkle_radius_mm": Number(above=0, scale=MM),
+    "c_threshold_per_mm": THRESHOLD,
+    "first_wrinkle_radius_mm": Number(low=0.1, high=1e5, scale=MM),
 }
 _APPEARANCE: dict[str, Kind] = {
     # Required where no map gives them.
@@ -70,17 +74,17 @@ _APPEARANCE: dict[str, Kind] = {
     "coat_roughness": Number(low=0.08, high=1, default=0.3),
     "anisotropy": Number(low=-1, high=1, default=0.0),
     "texture": Text(choices=("none", "leather", "suede", "weave"), default="none"),
-    "texture_scale_mm": Number(above=0, high=100, scale=MM, default=1.0),
+    "texture_scale_mm": Number(low=0.01, high=100, scale=MM, default=1.0),
     "texture_depth_mm": Number(low=0, high=10, scale=MM, default=0.0),
-    "perforation_pitch_mm": Number(above=0, high=100, scale=MM, default=6.0),
+    "perforation_pitch_mm": Number(low=0.1, high=100, scale=MM, default=6.0),
     "perforation_diameter_mm": Number(low=0, high=50, scale=MM, default=0.0),
     "maps": Text(),
-    "maps_width_mm": Number(above=0, high=10_000, scale=MM),
+    "maps_width_mm": Number(low=1, high=10_000, scale=MM),
 }
 _FOAM: dict[str, Kind] = {
     "strain": Array(shape=(None,), low=0.0, high=1.0, required=True),
-    "stress_kpa": Array(shape=(None,), low=0.0, scale=1e3, required=True),
-    "young_kpa": Number(above=0, scale=1e3, required=True),
+    "stress_kpa": Array(shape=(None,), low=0.0, high=1e6, scale=1e3, required=True),
+    "young_kpa": Number(low=1e-3, high=1e8, scale=1e3, required=True),
     "poisson": Number(low=-0.99, high=0.499, required=True),
     "friction": Number(low=0, high=2, required=True),
 }
@@ -112,6 +116,7 @@ def list_foam_materials() -> tuple[str, ...]:
     return _names("foam")
 
 
+@reader("a material")
 def read_material(name_or_path: str | Path) -> Material:
     """Read a cover material by name, or from a TOML file.
 
@@ -189,6 +194,7 @@ def _texture_maps(document: Document, look: dict[str, Any]) -> TextureMaps | Non
     return maps
 
 
+@reader("a foam material")
 def read_foam_material(name_or_path: str | Path) -> FoamMaterial:
     """Read a foam by name, or from a TOML file with a [foam] table.
 

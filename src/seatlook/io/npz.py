@@ -13,8 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError
-from seatlook.files import write_bytes
-from seatlook.io.toml import read_file
+from seatlook.files import read_file, write_bytes
 
 Arrays = dict[str, npt.NDArray[Any]]
 

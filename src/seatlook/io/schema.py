@@ -14,10 +14,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from seatlook.errors import did_you_mean
 from seatlook.io.toml import Document, Key
 
 MM = 1e-3
+FAR_MM = 1e5  # no place of a seat lies farther away
 LISTED = 16  # a message names no more choices than this
 
 
@@ -47,7 +47,7 @@ class Number:
         """Return the value, converted; report what is wrong with it."""
         if isinstance(value, bool) or not isinstance(value, int | float):
             document.report(key, shown(value), "a number")
-        elif not math.isfinite(value):
+        elif not _is_finite(value):
             document.report(key, shown(value), "a finite number")
         elif not (self.low <= value <= self.high and value > self.above):
             document.report(key, shown(value), self._range())
@@ -78,7 +78,7 @@ class Integer:
         if isinstance(value, bool) or not isinstance(value, int):
             document.report(key, shown(value), "a whole number")
         elif not self.low <= value <= self.high:
-            document.report(key, value, f"{self.low} to {self.high}")
+            document.report(key, shown(value), f"{self.low} to {self.high}")
         else:
             return value
         return None
@@ -133,7 +133,10 @@ class Array:
         if not _is_array(value, self.shape):
             document.report(key, shown(value), f"an array of {shape} numbers")
             return None
-        array = np.array(value, dtype=np.float64)
+        try:
+            array = np.array(value, dtype=np.float64)
+        except OverflowError:
+            array = np.full(1, np.nan)
         if not np.isfinite(array).all():
             document.report(key, shown(value), "finite numbers")
         elif array.min() < self.low or array.max() > self.high:
@@ -141,6 +144,14 @@ class Array:
         else:
             return array * self.scale
         return None
+
+
+def _is_finite(value: float) -> bool:
+    """Whether a number is one that a float64 holds; a whole number of TOML may have any length."""
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def _is_array(value: Any, shape: tuple[int | None, ...]) -> bool:
@@ -187,7 +198,7 @@ class Table:
             return {name: _absent(kind) for name, kind in self.keys.items()}
         for name in value:
             if name not in self.keys:
-                hint = did_you_mean(name, self.keys)
+                hint = document.hint(name, self.keys)
                 document.report((*key, name), "unknown key", f"one of {', '.join(self.keys)}", hint)
         result: dict[str, Any] = {}
         for name, kind in self.keys.items():
@@ -240,6 +251,16 @@ class Rows:
         return rows
 
 
+def place_mm(size: int, *, required: bool = True, many: bool = False) -> Array:
+    """Kind of a place of ``size`` coordinates, or of any number of them."""
+    shape = (None, size) if many else (size,)
+    return Array(shape=shape, low=-FAR_MM, high=FAR_MM, scale=MM, required=required)
+
+
+# C_threshold: radii from a tenth of a millimetre to a hundred metres.
+THRESHOLD = Number(low=1e-5, high=10, scale=1 / MM)
+
+
 def known(
     document: Document, key: Key, name: str | None, choices: Iterable[str], what: str
 ) -> bool:
@@ -249,7 +270,7 @@ def known(
         return name is not None
     listed = f"one of {', '.join(names)}" if len(names) <= LISTED else what
     expected = listed if names else f"{what}; there are none"
-    document.report(key, shown(name), expected, did_you_mean(name, names))
+    document.report(key, shown(name), expected, document.hint(name, names))
     return False
 
 
@@ -277,7 +298,12 @@ def described(kind: Kind) -> str:
 
 def shown(value: Any) -> str:
     """Show a value in a message, cut to a readable length."""
-    text = {True: "true", False: "false"}[value] if isinstance(value, bool) else repr(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    # Python spells no number of more digits than it reads.
+    if isinstance(value, int) and value.bit_length() > 1024:
+        return f"a whole number of {value.bit_length()} bits"
+    text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal
 
+from seatlook.files import reader
 from seatlook.io.schema import Integer, Kind, Number, Rows, Table, Text, Texts, read_table, shown
 from seatlook.io.toml import Document, quoted, read_document
 
@@ -89,7 +90,7 @@ _KEYS: dict[str, Kind] = {
                         "kind": Text(choices=KINDS, required=True),
                         "of": Text(),
                         "distribution": Text(choices=("normal", "uniform"), default="normal"),
-                        "spread": Number(above=0, required=True),
+                        "spread": Number(low=1e-9, high=1e3, required=True),
                     }
                 ),
                 required=True,
@@ -99,6 +100,7 @@ _KEYS: dict[str, Kind] = {
 }
 
 
+@reader("a sweep file")
 def read_sweep(path: Path) -> Sweep:
     """Read a sweep file.
 

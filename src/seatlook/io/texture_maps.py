@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-import io
 import re
+import warnings
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError, Problem
 from seatlook.exr import read_exr
-from seatlook.io.toml import read_file
+from seatlook.files import LARGEST_FILE, opened, reader
 from seatlook.model import TextureMaps
 from seatlook.model.colour import srgb_decode, srgb_encode
 from seatlook.model.texture import Pixels
@@ -28,8 +30,11 @@ _NAMES = {
     "arm": r"arm|orm",
 }
 _SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr")
+LARGEST_PIXELS = 2**27  # of a picture; 8192 x 8192 are half of it
 # Finer is not seen from where a seat is looked at, and four times the memory.
 LARGEST = 2048
+_LINEAR = srgb_decode(np.arange(256) / 255).astype(np.float32)
+_STRIP = 64  # rows that are averaged at a time
 # A map that is black throughout but for what JPEG adds.
 _BLACK = 4
 # How far [1/255] the channels of a grey picture may be apart, again for JPEG.
@@ -81,6 +86,7 @@ def _role(path: Path) -> str | None:
     return None
 
 
+@reader("a folder of texture maps")
 def read_texture_maps(folder: Path, *, width: float, name: str | None = None) -> TextureMaps:
     """Read a folder of measured maps.
 
@@ -100,12 +106,11 @@ def read_texture_maps(folder: Path, *, width: float, name: str | None = None) ->
     """
     files = map_files(folder)
     maps: dict[str, Pixels] = {}
-    shapes: dict[Path, tuple[int, ...]] = {}
+    shapes: dict[Path, tuple[int, int]] = {}
     problems: list[Problem] = []
     for role, path in files.items():
         try:
-            pixels = _pixels(path, linear=role == "albedo")
-            shapes[path] = pixels.shape
+            pixels, shapes[path] = _pixels(path, is_albedo=role == "albedo")
             maps = _CHECKED[role](path, pixels) | maps
         except InputError as error:
             problems += error.problems
@@ -114,36 +119,78 @@ def read_texture_maps(folder: Path, *, width: float, name: str | None = None) ->
         raise InputError(problems)
     if "metalness" in maps and maps["metalness"].max() <= _BLACK:
         del maps["metalness"]
-    rows, columns = next(iter(shapes.values()))[:2]
-    reduced = {role: _reduced(role, pixels) for role, pixels in maps.items()}
+    rows, columns = next(iter(shapes.values()))
     return TextureMaps(
-        folder=name or str(folder), width=width, height=width * rows / columns, **reduced
+        folder=name or str(folder), width=width, height=width * rows / columns, **maps
     )
 
 
-def _pixels(path: Path, *, linear: bool) -> Pixels:
-    """Eight-bit pixels (h, w) or (h, w, 3) of a picture file; ``linear`` floats become sRGB."""
+def _pixels(path: Path, *, is_albedo: bool) -> tuple[Pixels, tuple[int, int]]:
+    """Eight-bit pixels (h, w) or (h, w, 3), no side above ``LARGEST``, and the file's own size."""
     if path.suffix.lower() == ".exr":
-        values = np.clip(read_exr(path).astype(np.float64), 0.0, 1.0)
-        return _eight_bits(255 * (srgb_encode(values) if linear else values))
+        values = read_exr(path)
+        shape = values.shape[0], values.shape[1]
+        return _averaged(partial(_strip_of_exr, values, is_albedo), shape, is_albedo), shape
     from PIL import Image, UnidentifiedImageError
 
-    content = read_file(path)
     try:
-        with Image.open(io.BytesIO(content)) as picture:
-            if picture.mode == "F":
-                raise _refusal(path, "floating point", "8 or 16 bits a channel")
-            if picture.mode.startswith("I"):
-                return _eight_bits(np.asarray(picture).astype(np.float64) / 257)
-            grey = picture.mode in ("1", "L", "LA")
-            return np.asarray(picture.convert("L" if grey else "RGB"))
+        with opened(path, at_most=LARGEST_FILE) as stream, warnings.catch_warnings():
+            # The library warns of pictures far below the limit here.
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(stream) as picture:
+                _check_picture(path, picture)
+                shape = picture.size[1], picture.size[0]
+                return _averaged(partial(_strip_of_picture, picture), shape, is_albedo), shape
     except UnidentifiedImageError as error:
         raise _refusal(path, "no picture", "a PNG, JPEG, TIFF or OpenEXR picture") from error
-    # Pillow raises these on content that is cut short, damaged or absurdly large.
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise _refusal(path, str(error), "a whole picture") from error
+    except (InputError, Warning):
+        raise
+    # Pillow raises whatever it stumbles over on content that is cut short, damaged or too large.
+    except Exception as error:
+        raise _refusal(path, str(error) or type(error).__name__, "a whole picture") from error
+
+
+def _check_picture(path: Path, picture: Any) -> None:
+    width, height = picture.size
+    if width * height > LARGEST_PIXELS:
+        raise _refusal(path, f"{width} x {height} pixels", f"at most {LARGEST_PIXELS} pixels")
+    if picture.mode == "F":
+        raise _refusal(path, "floating point", "8 or 16 bits a channel")
+
+
+def _strip_of_exr(values: npt.NDArray[Any], is_albedo: bool, first: int, last: int) -> Pixels:
+    strip = np.clip(values[first:last].astype(np.float64), 0.0, 1.0)
+    return _eight_bits(255 * (srgb_encode(strip) if is_albedo else strip))
+
+
+def _strip_of_picture(picture: Any, first: int, last: int) -> Pixels:
+    strip = picture.crop((0, first, picture.size[0], last))
+    if strip.mode.startswith("I"):
+        return _eight_bits(np.asarray(strip).astype(np.float64) / 257)
+    return np.asarray(strip.convert("L" if strip.mode in ("1", "L", "LA") else "RGB"))
+
+
+def _averaged(
+    strip: Callable[[int, int], Pixels], shape: tuple[int, int], is_albedo: bool
+) -> Pixels:
+    """Put strips of rows together: means over whole blocks until no side is above ``LARGEST``."""
+    step = -(-max(shape) // LARGEST)
+    rows, columns = (max(n // step, 1) for n in shape)
+    down, across = (min(step, n) for n in shape)
+    if step == 1:
+        return strip(0, rows)
+    means = []
+    for first in range(0, rows, _STRIP):
+        last = min(first + _STRIP, rows)
+        pixels = strip(first * down, last * down)[:, : columns * across]
+        values = _LINEAR[pixels] if is_albedo else pixels
+        shape_of_means = (last - first, columns, *pixels.shape[2:])
+        # Down first: rows lie one behind the other.
+        total = values.reshape(last - first, down, -1).sum(axis=1, dtype=np.float32)
+        total = total.reshape(last - first, columns, across, -1).sum(axis=2)
+        mean = total.reshape(shape_of_means).astype(np.float64) / (down * across)
+        means.append(_eight_bits(255 * srgb_encode(mean) if is_albedo else mean))
+    return np.concatenate(means)
 
 
 def _eight_bits(values: npt.NDArray[np.float64]) -> Pixels:
@@ -203,30 +250,14 @@ _CHECKED: dict[str, Any] = {
 }
 
 
-def _out_of_proportion(shapes: dict[Path, tuple[int, ...]]) -> list[Problem]:
+def _out_of_proportion(shapes: dict[Path, tuple[int, int]]) -> list[Problem]:
     """Problems of the pictures that do not show the same piece as the first."""
     problems = []
-    for path, (rows, columns, *_) in shapes.items():
-        first, (height, width, *_) = next(iter(shapes.items()))
+    for path, (rows, columns) in shapes.items():
+        first, (height, width) = next(iter(shapes.items()))
         # A pixel more or less is rounding.
         if abs(columns * height - rows * width) > max(height, width):
             expected = f"the proportions of {first.name}, {width} x {height}"
             got = f"{columns} x {rows} pixels"
             problems.append(Problem(key="picture", got=got, expected=expected, file=path))
     return problems
-
-
-def _reduced(role: str, pixels: Pixels) -> Pixels:
-    """Mean over whole blocks until no side is above ``LARGEST``."""
-    step = -(-max(pixels.shape[:2]) // LARGEST)
-    if step == 1:
-        return pixels
-    rows, columns = (max(n // step, 1) for n in pixels.shape[:2])
-    down, across = (min(step, n) for n in pixels.shape[:2])
-    values = pixels[: rows * down, : columns * across].astype(np.float32) / 255
-    if role == "albedo":
-        values = srgb_decode(values)
-    mean = values.reshape(rows, down, columns, across, -1).mean(axis=(1, 3))
-    if role == "albedo":
-        mean = srgb_encode(mean)
-    return _eight_bits(255 * mean.reshape(rows, columns, *pixels.shape[2:]).astype(np.float64))

@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from seatlook.errors import InputError, Problem
+from seatlook.errors import InputError, Problem, did_you_mean
+from seatlook.files import LARGEST_TEXT, decoded, read_file
 
 Key = tuple[str | int, ...]
 
-_STRINGS_AND_COMMENTS = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|#.*')
+# What tells where a statement ends, and the strings and comments that may hold the same marks.
+_TOKENS = re.compile(
+    r'''"""(?:\\.|[^\\])*?"{3,5}|\'{3}.*?\'{3,5}|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*|[][{}.,=\n]''',
+    re.DOTALL,
+)
+_OPENING, _CLOSING = ("[", "{"), ("]", "}")
+DEEPEST = 32  # tables and arrays in each other
+_HINTS = 50  # a file with more problems than this was not mistyped
 
 
 @dataclass
@@ -23,6 +32,7 @@ class Document:
     """A parsed TOML file and the problems found in it so far."""
 
     file: Path
+    text: str
     content: bytes
     data: dict[str, Any]
     problems: list[Problem] = field(default_factory=list)
@@ -30,7 +40,7 @@ class Document:
     @cached_property
     def lines(self) -> dict[Key, int]:
         """Key -> line; only messages need it, and it takes longer than parsing."""
-        return index_lines(self.content.decode())
+        return index_lines(self.text)
 
     def line(self, key: Key) -> int | None:
         """Return the line of ``key``, or of the innermost table around it that has one."""
@@ -51,6 +61,10 @@ class Document:
                 hint=hint,
             )
         )
+
+    def hint(self, word: str, choices: Iterable[str]) -> str:
+        """Say which choice was meant; looking for it takes long, so only in the first problems."""
+        return did_you_mean(word, choices) if len(self.problems) < _HINTS else ""
 
     @contextmanager
     def blame(self, key: Key) -> Iterator[None]:
@@ -125,43 +139,54 @@ def read_document(path: Path) -> Document:
     Raises
     ------
     InputError
-        When the file is absent, not UTF-8 or not TOML; the message carries the line.
+        When the file is absent, too large, not UTF-8 or not TOML, or nests too deep; the message
+        carries the line.
     """
-    content = read_file(path)
+    content = read_file(path, at_most=LARGEST_TEXT)
+    text = decoded(content, path)
+    _check_depth(text, path)
+    return Document(file=path, text=text, content=content, data=_parsed(text, path))
+
+
+def _parsed(text: str, path: Path) -> dict[str, Any]:
     try:
-        data = tomllib.loads(content.decode())
-    except UnicodeDecodeError as error:
-        line = content[: error.start].count(b"\n") + 1
-        raise InputError.single(
-            "encoding",
-            got=f"byte {content[error.start]:#x}",
-            expected="UTF-8",
-            file=path,
-            line=line,
-        ) from error
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         place = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
         # An error at the end of the file is reported without a line.
-        line = int(place[1]) if place else content.count(b"\n") + 1
+        line = int(place[1]) if place else text.count("\n") + 1
         what = re.sub(r"\s*\(at .*\)$", "", str(error))
         raise InputError.single(
             "syntax", got=what.lower(), expected="valid TOML", file=path, line=line
         ) from error
-    return Document(file=path, content=content, data=data)
+    # Python does not read numbers of more digits than this.
+    except ValueError as error:
+        most = sys.get_int_max_str_digits()
+        digits = re.search(rf"[0-9_]{{{most},}}", text)
+        where = None if digits is None else text.count("\n", 0, digits.start()) + 1
+        raise InputError.single(
+            "syntax", got=f"a number of over {most} digits", expected="valid TOML",
+            file=path, line=where,
+        ) from error  # fmt: skip
 
 
-def read_file(path: Path, *, named_by: Key = ("file",)) -> bytes:
-    """Return the content of a file that must exist."""
-    try:
-        return path.read_bytes()
-    except FileNotFoundError as error:
-        raise InputError.single(
-            spelled(named_by), got="no such file", expected="a file", file=path
-        ) from error
-    except OSError as error:
-        raise InputError.single(
-            spelled(named_by), got=error.strerror, expected="a readable file", file=path
-        ) from error
+def _check_depth(text: str, path: Path) -> None:
+    """Refuse arrays and tables in each other beyond what a file of ours holds."""
+    depth = dots = 0
+    for token in _TOKENS.finditer(text):
+        mark = token[0]
+        if mark in _OPENING:
+            depth += 1
+        elif mark in _CLOSING:
+            depth -= 1
+        # A key may be quoted between its dots.
+        dots = dots + 1 if mark == "." else dots if mark[0] in "\"'" else 0
+        if max(depth, dots) > DEEPEST:
+            raise InputError.single(
+                "nesting", got=f"more than {DEEPEST} tables or arrays in each other",
+                expected=f"at most {DEEPEST}", file=path,
+                line=text.count("\n", 0, token.start()) + 1,
+            )  # fmt: skip
 
 
 def index_lines(text: str) -> dict[Key, int]:
@@ -186,24 +211,19 @@ def index_lines(text: str) -> dict[Key, int]:
 
 
 def _statements(text: str) -> Iterator[tuple[int, dict[str, Any], bool]]:
-    """Cut a valid text into headers and assignments: the shortest runs of lines that parse."""
-    chunk, first, depth = "", 0, 0
-    for number, line in enumerate(text.splitlines(keepends=True), start=1):
-        bare = _STRINGS_AND_COMMENTS.sub("", line).strip()
-        if not chunk and not bare:
+    """Cut a valid text into headers and assignments, which end with a line outside of brackets."""
+    start, line, first, depth = 0, 1, 1, 0
+    for token in _TOKENS.finditer(f"{text}\n"):
+        mark = token[0]
+        depth += (mark in _OPENING) - (mark in _CLOSING)
+        line += mark.count("\n")
+        if mark != "\n" or depth > 0:
             continue
-        first = first if chunk else number
-        chunk += line
-        depth += sum(map(bare.count, "[{")) - sum(map(bare.count, "]}"))
-        # Parsing every prefix of a long array would take quadratic time.
-        if depth > 0 and not ('"""' in chunk or "'''" in chunk):
-            continue
-        try:
-            parsed = tomllib.loads(chunk)
-        except tomllib.TOMLDecodeError:
-            continue
-        yield first, parsed, chunk.lstrip().startswith("[")
-        chunk, depth = "", 0
+        chunk = text[start : token.end()]
+        bare = chunk.strip()
+        if bare and not bare.startswith("#"):
+            yield first, tomllib.loads(chunk), bare.startswith("[")
+        start, first = token.end(), line
 
 
 def _open_table(parsed: dict[str, Any], rows: dict[Key, int]) -> Key:

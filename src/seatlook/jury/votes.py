@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from seatlook.errors import Problem, did_you_mean
+from seatlook.io.schema import shown
 from seatlook.jury.questionnaire import SCHEMA, WRINKLES, Kind, Questionnaire, trials
 
 _KEYS = {"trial", "question", "left", "right", "choice"}
@@ -134,6 +135,10 @@ def _document(
             Problem(key="file", got=error.msg, expected="JSON", file=path, line=error.lineno)
         )
         return None
+    # Numbers of more digits than Python reads, lists in lists in lists.
+    except (ValueError, RecursionError) as error:
+        problems.append(Problem(key="file", got=shown(str(error)), expected="JSON", file=path))
+        return None
     types = {"schema": int, "questionnaire": str, "judge": str, "seed": int, "votes": list}
     if not isinstance(document, dict):
         problems.append(_type("file", document, "an object", path))
@@ -145,7 +150,9 @@ def _document(
     ]
     for key, value in (("schema", SCHEMA), ("questionnaire", questionnaire.digest)):
         if not wrong and document[key] != value:
-            wrong.append(Problem(key=key, got=repr(document[key]), expected=repr(value), file=path))
+            wrong.append(
+                Problem(key=key, got=shown(document[key]), expected=repr(value), file=path)
+            )
     if not wrong and not document["judge"].strip():
         wrong.append(Problem(key="judge", got="an empty name", expected="a name", file=path))
     problems += wrong
@@ -185,7 +192,7 @@ def _vote_problems(
 ) -> Iterator[Problem]:
     if not isinstance(entry, dict) or not set(entry) >= _KEYS:
         expected = f"an object with {', '.join(sorted(_KEYS))}"
-        got = f"keys {', '.join(sorted(entry))}" if isinstance(entry, dict) else repr(entry)
+        got = f"keys {shown(sorted(entry))}" if isinstance(entry, dict) else shown(entry)
         yield Problem(key=key, got=got, expected=expected, file=path)
         return
     if type(entry["trial"]) is not int or entry["trial"] < 0:
@@ -212,7 +219,7 @@ def _pair_problems(
             unknown = True
             yield Problem(
                 key=f"{key}.{side}",
-                got=repr(entry[side]),
+                got=shown(entry[side]),
                 expected="a stimulus of the questionnaire",
                 file=path,
                 hint=did_you_mean(str(entry[side]), known),
@@ -224,7 +231,7 @@ def _pair_problems(
     if not ranked and not (pair in catches and entry["question"] == WRINKLES):
         yield Problem(
             key=key,
-            got=f"{entry['left']!r} beside {entry['right']!r} under {entry['question']!r}",
+            got=f"{entry['left']!r} beside {entry['right']!r} under {shown(entry['question'])}",
             expected="two ranked stimuli, or a catch pair under 'wrinkles'",
             file=path,
         )
@@ -263,4 +270,4 @@ def _same(first: Vote | None, second: Vote) -> bool:
 
 
 def _type(key: str, got: Any, expected: str, path: Path) -> Problem:
-    return Problem(key=key, got=repr(got), expected=expected, file=path)
+    return Problem(key=key, got=shown(got), expected=expected, file=path)

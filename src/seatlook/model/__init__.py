@@ -7,11 +7,9 @@ from seatlook.model.cover import (
     Hem,
     Points,
     Solution,
-    Stage,
     Stitching,
     Strains,
     WrinkleMap,
-    stage_units,
 )
 from seatlook.model.criteria import Criteria, CurvatureMode, StrainMeasure, criteria_of
 from seatlook.model.light import (
@@ -32,6 +30,7 @@ from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMateria
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
 from seatlook.model.scene import Design, Frame, Hook, Limit, Pose, Scene, Verdict, ZoneBox
 from seatlook.model.shells import ShellResult, Shells, ShellState
+from seatlook.model.stage import Stage, stage_units
 from seatlook.model.table import Field
 from seatlook.model.texture import TextureMaps
 from seatlook.model.thread import Thread

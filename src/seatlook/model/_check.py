@@ -13,10 +13,24 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 
-def floats(owner: object, name: str, *shape: int | None, finite: bool = True) -> None:
-    """Make field ``name`` a read-only float64 array of ``shape`` (None = any length)."""
+FARTHEST = 1e3  # [m] no seat reaches beyond, and squares of it are still exact
+LARGEST_STRAIN = 1e3  # a thousandfold length is no cloth
+
+
+def floats(
+    owner: object, name: str, *shape: int | None, finite: bool = True, most: float = np.inf
+) -> None:
+    """Make field ``name`` a read-only float64 array of ``shape`` (None = any length).
+
+    Its entries are finite and at most ``most`` from 0, but for those that may be nan.
+    """
     _array(owner, name, np.float64, shape)
     value = getattr(owner, name)
+    if value.size and np.abs(value[np.isfinite(value)]).max(initial=0.0) > most:
+        farthest = value.flat[np.nanargmax(np.where(np.isfinite(value), np.abs(value), 0.0))]
+        raise InputError.single(
+            _key(owner, name), got=f"{farthest:g}", expected=f"{-most:g} to {most:g}"
+        )
     if finite and not np.isfinite(value).all():
         bad = int(np.count_nonzero(~np.isfinite(value)))
         raise InputError.single(_key(owner, name), got=f"{bad} nan or inf", expected="finite")
@@ -56,7 +70,10 @@ def _key(owner: object, name: str) -> str:
 
 
 def _array(owner: object, name: str, dtype: Any, shape: tuple[int | None, ...]) -> None:
-    value = np.array(getattr(owner, name), dtype=dtype, order="C")
+    given = np.asarray(getattr(owner, name))
+    value = np.array(given, dtype=dtype, order="C")
+    if dtype is np.int64 and given.dtype.kind == "f" and not (value == given).all():
+        raise InputError.single(_key(owner, name), got="fractions", expected="whole numbers")
     expected = tuple("n" if n is None else n for n in shape)
     if value.ndim != len(shape) or any(
         n is not None and n != m for n, m in zip(shape, value.shape, strict=True)

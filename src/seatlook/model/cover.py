@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import groupby
 from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.model._check import FloatArray, IntArray, floats, ints
+from seatlook.model._check import (
+    FARTHEST,
+    LARGEST_STRAIN,
+    FloatArray,
+    IntArray,
+    floats,
+    in_range,
+    ints,
+)
 from seatlook.model.criteria import Criteria
 from seatlook.model.material import Foam, Material
+from seatlook.model.stage import Stage
 from seatlook.model.thread import Thread
 
 Status = Literal["converged", "not converged"]
@@ -32,8 +39,8 @@ class Points:
     weights: FloatArray
 
     def __post_init__(self) -> None:
-        ints(self, "vertices", None, 2)
-        floats(self, "weights", len(self.vertices), 2)
+        ints(self, "vertices", None, 2, below=2**31)
+        floats(self, "weights", len(self.vertices), 2, most=2.0)
 
     def __len__(self) -> int:
         return len(self.vertices)
@@ -89,7 +96,7 @@ class Anchor:
     limit: float | None = None
 
     def __post_init__(self) -> None:
-        floats(self, "target", len(self.points), 3)
+        floats(self, "target", len(self.points), 3, most=FARTHEST)
         floats(self, "length", len(self.points))
         if self.at is not None:
             floats(self, "at", len(self.points))
@@ -135,78 +142,6 @@ class Hem:
         floats(self, "stiffness", k)
 
 
-Ramp = Literal["linear", "smooth"]
-RAMPS: tuple[Ramp, ...] = ("linear", "smooth")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Stage:
-    """A stretch of process time [s] in which some ties are ramped from 0 to full.
-
-    Parameters
-    ----------
-    ramp : "linear", or "smooth": slow at both ends, ``3 s^2 - 2 s^3`` of the time's share s
-    group : name of a group of stages that is kept, drawn and done again as one
-    seams : names of the seams that close in it; those that no stage names close in the first
-    """
-
-    name: str
-    start: float
-    end: float
-    ramp: Ramp = "linear"
-    group: str | None = None
-    seams: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        if not 0 <= self.start < self.end:
-            raise InputError.single(
-                f"stage {self.name}",
-                got=f"start {self.start}, end {self.end}",
-                expected="0 <= start < end",
-            )
-        if self.ramp not in RAMPS:
-            raise InputError.single(
-                f"stage {self.name}.ramp", got=repr(self.ramp), expected=" or ".join(RAMPS)
-            )
-
-    @property
-    def unit(self) -> str:
-        """What it is kept and drawn as: its group, or itself."""
-        return self.group or self.name
-
-
-def stage_units(stages: Sequence[Stage]) -> list[str]:
-    """Names of groups, and of stages without one, in the order in which they begin.
-
-    Raises
-    ------
-    InputError
-        Two stages have one name, or another stage begins between two of a group.
-
-    Examples
-    --------
-    >>> stage_units([Stage(name="a", start=0.0, end=1.0, group="sew"),
-    ...              Stage(name="pull", start=1.0, end=3.0),
-    ...              Stage(name="b", start=0.5, end=2.0, group="sew")])
-    ['sew', 'pull']
-    """
-    order = sorted(stages, key=lambda stage: stage.start)
-    names = [stage.name for stage in stages]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise InputError.single("stage", got=f"{twice[0]!r} twice", expected="different names")
-    units = [unit for unit, _ in groupby(order, key=lambda stage: stage.unit)]
-    torn = [unit for unit in units if units.count(unit) > 1]
-    if torn:
-        last = units.index(torn[0], units.index(torn[0]) + 1)
-        raise InputError.single(
-            f"group {torn[0]}",
-            got=f"{units[last - 1]!r} beginning between its stages",
-            expected="stages that begin one after the other",
-        )
-    return units
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Cover:
     """All panels meshed and placed, with what will pull on them.
@@ -246,10 +181,13 @@ class Cover:
 
     def __post_init__(self) -> None:
         n, m = len(self.rest), len(self.faces)
-        floats(self, "rest", None, 2)
-        floats(self, "uv", n, 2)
-        floats(self, "positions", n, 3)
+        if m == 0:
+            raise InputError.single("Cover.faces", got="none", expected="at least one")
+        floats(self, "rest", None, 2, most=FARTHEST)
+        floats(self, "uv", n, 2, most=FARTHEST)
+        floats(self, "positions", n, 3, most=FARTHEST)
         ints(self, "faces", None, 3, below=n)
+        in_range(self, "element_size", 0.0, FARTHEST)
         ints(self, "panel", m, below=len(self.panel_names))
         ints(self, "zone", m, below=len(self.zone_names))
         if len(self.materials) != len(self.panel_names):
@@ -258,12 +196,22 @@ class Cover:
                 got=f"{len(self.materials)}",
                 expected=f"one for each of {len(self.panel_names)} panels",
             )
+        self._check_points(n)
         if self.hem is not None and (len(self.hem.density), len(self.hem.lift)) != (m, n):
             raise InputError.single(
                 "Cover.hem",
                 got=f"{len(self.hem.density)} faces and {len(self.hem.lift)} vertices",
                 expected=f"{m} and {n}",
             )
+
+    def _check_points(self, count: int) -> None:
+        """Refuse ties to vertices that there are not."""
+        ties = {f"seam {s.name}": (s.a, s.b) for s in self.stitchings}
+        ties |= {f"{a.kind} {a.name}": (a.points, a.points) for a in self.anchors}
+        for name, sides in ties.items():
+            most = max(int(points.vertices.max(initial=0)) for points in sides)
+            if most >= count:
+                raise InputError.single(name, got=f"vertex {most}", expected=f"0..{count - 1}")
 
     def __repr__(self) -> str:
         return (
@@ -342,10 +290,10 @@ class Solution:
 
     def __post_init__(self) -> None:
         n, m = len(self.cover.rest), len(self.cover.faces)
-        floats(self, "positions", n, 3)
-        floats(self, "velocities", n, 3)
+        floats(self, "positions", n, 3, most=FARTHEST)
+        floats(self, "velocities", n, 3, most=1e6)
         for name in ("strain_top", "strain_mid", "strain_bottom"):
-            floats(self, name, m, 2, 2)
+            floats(self, name, m, 2, 2, most=LARGEST_STRAIN)
         floats(self, "friction_anchor", n, 3, finite=False)
         if self.strain_peak is not None:
             floats(self, "strain_peak", m, 2, finite=False)

@@ -9,11 +9,12 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.model._check import FloatArray, floats, in_range, positive
+from seatlook.model._check import FARTHEST, FloatArray, floats, in_range, positive
 
 # Linear sRGB of direct sun (ASTM G173, 5233 K), scaled so that its luminance is 1.
 SUN_COLOUR = (1.159, 0.974, 0.788)
 DISTANCE = 1.1  # m, of the demo seat
+BRIGHTEST = 1e9  # lux, cd, cd/m2; ten thousand suns
 _RADIUS = 0.349  # m, of the sphere around the demo's foam
 _ROUND = 2  # digits of the ratio to it: 1 for the demo's foam below a cover of any thickness
 _MARGIN = 1.01  # free room around a seat for which the sphere's distance is too short
@@ -40,9 +41,10 @@ class Light:
     size: float = 0.0
 
     def __post_init__(self) -> None:
-        floats(self, "vector", 3)
+        floats(self, "vector", 3, most=FARTHEST)
         floats(self, "colour", 3)
         positive(self, "intensity")
+        in_range(self, "intensity", 0.0, BRIGHTEST)
         in_range(self, "size", 0.0, 3.2)
 
 
@@ -198,11 +200,16 @@ class Rig:
         if not self.lights and not self.ambient > 0 and self.panorama is None:
             raise InputError.single(where, got="no light", expected="a light or sky")
         in_range(self, "ambient", 0.0, 1e6)
+        if self.ev100 is not None:
+            in_range(self, "ev100", -10.0, 30.0)
         if self.panorama is None:
             return
         floats(self, "panorama", None, None, 3)
         if self.ambient > 0:
             raise InputError.single(where, got="ambient and panorama", expected="one of them")
+        if self.panorama.max(initial=0.0) > BRIGHTEST**2:
+            got = f"a luminance of {self.panorama.max():g} cd/m2"
+            raise InputError.single(f"{where}: panorama", got=got, expected="up to 1e18 cd/m2")
         if min(self.panorama.shape[:2]) < 4 or self.panorama.min() < 0:
             raise InputError.single(
                 f"{where}: panorama",
@@ -231,7 +238,13 @@ class Camera:
 
     def __post_init__(self) -> None:
         for name in ("position", "target", "up"):
-            floats(self, name, 3)
+            floats(self, name, 3, most=FARTHEST)
+        if not np.linalg.norm(self.target - self.position) > 1e-3:
+            raise InputError.single(
+                "Camera.target", got="the camera's own position", expected="a place away from it"
+            )
+        if not np.linalg.norm(self.up) > 1e-6:
+            raise InputError.single("Camera.up", got=self.up.tolist(), expected="a direction")
         in_range(self, "vertical_fov_deg", 1.0, 120.0)
         if min(self.size) < 1:
             raise InputError.single("Camera.size", got=self.size, expected="at least 1 x 1 pixels")

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.model._check import FloatArray, IntArray, floats, in_range, ints, positive
+from seatlook.model._check import FARTHEST, FloatArray, IntArray, floats, in_range, ints, positive
 from seatlook.model.texture import TextureMaps
 
 Texture = Literal["none", "leather", "suede", "weave"]
@@ -283,5 +283,5 @@ class Foam:
     curves: MappingProxyType[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
-        floats(self, "vertices", None, 3)
+        floats(self, "vertices", None, 3, most=FARTHEST)
         ints(self, "faces", None, 3, below=len(self.vertices))

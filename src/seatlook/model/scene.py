@@ -11,16 +11,18 @@ from typing import Literal
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.model._check import FloatArray, IntArray, floats, ints, positive
-from seatlook.model.cover import Stage
+from seatlook.model._check import FARTHEST, FloatArray, IntArray, floats, ints, positive
 from seatlook.model.criteria import CurvatureMode
 from seatlook.model.light import Camera, Rig
 from seatlook.model.material import Appearance, Foam, Material
 from seatlook.model.pattern import Pattern
+from seatlook.model.stage import Stage
 from seatlook.model.thread import Thread
 
 # What [accept] can limit besides the figures of a zone: its worst score over textures and rigs.
 SCORE_MEASURES = ("vwi", "equivalent_height_mm")
+ELEMENT_SIZES = (5e-4, 0.1)  # [m] from fine to coarse: below is thread, above no seat is left
+LARGEST_SEED = 2**31
 # Contradictions that [check] can let pass.
 ALLOWED = (
     "twisted seam",
@@ -47,7 +49,7 @@ class Pose:
 
     def __post_init__(self) -> None:
         floats(self, "rotation", 3, 3)
-        floats(self, "translation", 3)
+        floats(self, "translation", 3, most=FARTHEST)
         error = np.abs(self.rotation @ self.rotation.T - np.eye(3)).max()
         if error > 1e-6 or np.linalg.det(self.rotation) < 0:
             raise InputError.single(
@@ -119,8 +121,8 @@ class ZoneBox:
     visibility: Literal["A", "B", "C"] = "A"
 
     def __post_init__(self) -> None:
-        floats(self, "low", 2)
-        floats(self, "high", 2)
+        floats(self, "low", 2, most=FARTHEST)
+        floats(self, "high", 2, most=FARTHEST)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,6 +15,12 @@ FREE_EDGE = "free edge"
 BAND = 0.015  # [m] width of a seam band on each side, and of the free-edge band
 
 
+def built_in_zones(pattern: Pattern) -> tuple[str, ...]:
+    """Names of the classes of boxes, and of the zones that a pattern has without boxes."""
+    none = np.zeros((0, 2)), np.zeros(0, dtype=np.int64)
+    return ("A", "B", "C", *zones(*none, pattern)[1])
+
+
 def zones(
     centroids: FloatArray, panel: IntArray, pattern: Pattern, *, boxes: Sequence[ZoneBox] = ()
 ) -> tuple[IntArray, tuple[str, ...]]:

@@ -11,6 +11,7 @@ from markupsafe import Markup
 
 from seatlook import files
 from seatlook.errors import InputError
+from seatlook.files import read_text, reader
 from seatlook.jury.plan import SECONDS_PER_TRIAL
 from seatlook.jury.questionnaire import (
     Questionnaire,
@@ -54,6 +55,7 @@ def write_jury(
     return questionnaire
 
 
+@reader("the questionnaire of a jury")
 def read_jury(path: Path) -> tuple[Questionnaire, Key]:
     """Read the key that :func:`write_jury` wrote: the questionnaire, and its pictures by code.
 
@@ -63,7 +65,7 @@ def read_jury(path: Path) -> tuple[Questionnaire, Key]:
         Not such a file.
     """
     try:
-        document = json.loads(_text(path))
+        document = json.loads(read_text(path))
     except json.JSONDecodeError as error:
         raise InputError.single(
             "file", got=error.msg, expected="JSON", file=path, line=error.lineno
@@ -77,14 +79,7 @@ def read_jury(path: Path) -> tuple[Questionnaire, Key]:
 
 def read_votes(paths: Iterable[Path], questionnaire: Questionnaire) -> Ballots:
     """Read the files that the judges saved; see :func:`seatlook.jury.votes.merge_votes`."""
-    return merge_votes({path: _text(path) for path in paths}, questionnaire)
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError.single("file", got="bytes", expected="UTF-8 text", file=path) from error
+    return merge_votes({path: read_text(path) for path in paths}, questionnaire)
 
 
 def write_jury_page(

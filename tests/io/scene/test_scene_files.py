@@ -173,7 +173,7 @@ def test_what_a_map_is_counts(folder):
         ("sky.hdr", "sly.hdr", r"scene.toml:\d+: rig\[0\].panorama: got 'sly.hdr', expected a file "
          r"\(there is none at .*sly.hdr\)"),
         ("design.obj", "maps", r"scene.toml:\d+: design.file: got 'maps', expected a file "
-         r"\(there is none at .*maps\)"),
+         r"\(a folder at .*maps\)"),
         ("curves.toml", "c" * 300, r"scene.toml:\d+: foam.curves: got 'c+\.\.\., expected a file "
          r"\(File name too long at .*c\)"),
     ],

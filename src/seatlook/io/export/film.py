@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError
-from seatlook.files import write_bytes
+from seatlook.files import reader, write_bytes
 from seatlook.io.npz import read_npz, write_npz
 from seatlook.io.schema import shown
 
@@ -23,6 +23,7 @@ def write_shapes(path: Path, times: Sequence[float], shapes: Shapes) -> None:
     write_npz({"times": np.array(times, dtype=float), "positions": shapes}, path)
 
 
+@reader("shapes of a stage")
 def read_shapes(path: Path) -> tuple[npt.NDArray[np.float64], Shapes]:
     """Read times (k,) [s] and positions (k, n, 3) [m].
 

@@ -9,15 +9,17 @@ harm.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any
+from types import MappingProxyType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from seatlook.errors import InputError
+from seatlook.files import reader
 from seatlook.io.npz import Arrays, read_npz, write_npz
 from seatlook.io.schema import shown
 from seatlook.model import (
@@ -67,6 +69,7 @@ def write_result(solution: Solution, path: Path | str) -> None:
     write_npz({"meta": np.array(json.dumps(meta)), **arrays}, Path(path))
 
 
+@reader("a whole result file of seatlook")
 def read_result(path: Path | str) -> Solution:
     """Read a solution back exactly, to the last bit.
 
@@ -81,6 +84,8 @@ def read_result(path: Path | str) -> Solution:
     try:
         solution = _unpacked(meta["solution"], arrays, {})
     # What a tree that is no solution ends in; recursion: lists in lists in lists.
+    except InputError as error:
+        raise InputError(dataclasses.replace(p, file=path) for p in error.problems) from error
     except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise _refusal(path, f"{type(error).__name__}: {error}") from error
     if not isinstance(solution, Solution):
@@ -150,5 +155,38 @@ def _unpacked(node: Any, arrays: Mapping[str, Any], maps: dict[str, Any]) -> Any
     if "map" in node:
         return MappingProxyType({k: _unpacked(v, arrays, maps) for k, v in node["map"].items()})
     fields = {k: _unpacked(v, arrays, maps) for k, v in node.items() if k != "type"}
-    value = _TYPES[node["type"]](**fields)
+    kind = _TYPES[node["type"]]
+    for name, hint in _hints(kind).items():
+        if name in fields and not _fits(fields[name], hint):
+            got, expected = shown(fields[name]), getattr(hint, "__name__", str(hint))
+            raise InputError.single(f"{kind.__name__}.{name}", got=got, expected=expected)
+    value = kind(**fields)
     return maps.setdefault(json.dumps(node), value) if isinstance(value, TextureMaps) else value
+
+
+@functools.cache
+def _hints(kind: type) -> dict[str, Any]:
+    """Types of the fields of a core type."""
+    return get_type_hints(kind)
+
+
+def _fits(value: Any, hint: Any) -> bool:
+    """Whether a value that was read is of the type that a field has."""
+    origin, inner = get_origin(hint), get_args(hint)
+    if origin in (Union, UnionType):
+        return any(_fits(value, one) for one in inner)
+    if origin is Literal:
+        return value in inner
+    if origin is tuple:
+        length = len(value) if isinstance(value, tuple) else -1
+        each = inner[:1] * length if inner[1:] == (...,) else inner
+        return length == len(each) and all(map(_fits, value, each))
+    if origin is MappingProxyType:
+        return isinstance(value, MappingProxyType) and all(
+            _fits(v, inner[1]) for v in value.values()
+        )
+    if hint is float:
+        return isinstance(value, float | int) and not isinstance(value, bool)
+    if hint is int:
+        return isinstance(value, int) and not isinstance(value, bool)
+    return isinstance(value, origin or hint)

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from seatlook.errors import InputError
+from seatlook.files import opened, reader
 from seatlook.io.lsdyna.d3plot.reader import read_d3plot
 from seatlook.io.lsdyna.deck.reader import read_keyword
 from seatlook.model import ShellResult
 from seatlook.model.shells import StrainAxes
 
 
+@reader("a d3plot or a keyword deck")
 def read_shells(
     path: Path,
     *,
@@ -56,14 +58,5 @@ def read_shells(
 
 
 def _is_binary(path: Path) -> bool:
-    try:
-        with path.open("rb") as stream:
-            return b"\0" in stream.read(512)
-    except FileNotFoundError as error:
-        raise InputError.single(
-            "file", got="no such file", expected="a d3plot or a keyword deck", file=path
-        ) from error
-    except OSError as error:
-        raise InputError.single(
-            "file", got=error.strerror, expected="a readable file", file=path
-        ) from error
+    with opened(path) as stream:
+        return b"\0" in stream.read(512)

@@ -17,6 +17,7 @@ from ezdxf.lldxf.const import DXFError
 from shapely.errors import ShapelyError
 
 from seatlook.errors import InputError, InputWarning, Problem
+from seatlook.files import reader
 from seatlook.io.pattern.allowance import only_cut, with_allowance
 from seatlook.io.pattern.drawing.drawing import Drawing, open_drawing, refusal
 from seatlook.io.pattern.drawing.entities import Drawn, has_line, read_entities, read_texts
@@ -33,6 +34,7 @@ SMALLEST_NOTCH = 0.005  # m
 _SMALLEST_PATTERN_MM = 80.0
 
 
+@reader("a pattern (DXF)")
 def read_dxf(
     path: Path,
     *,
@@ -103,11 +105,13 @@ def _sewn_inside(
         raise InputError(replace(p, file=path) for p in error.problems) from error
 
 
+@reader("a pattern (DXF)")
 def report_dxf(path: Path, **options: Any) -> PatternReport:
     """Return what is read of a pattern file and what is not; ``options`` as in ``read_dxf``."""
     return read_drawing(path, **options)[1]
 
 
+@reader("a pattern (DXF)")
 def read_drawing(
     path: Path,
     *,

@@ -13,12 +13,13 @@ from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
-from seatlook.errors import InputError, did_you_mean
-from seatlook.files import write_text
+from seatlook.errors import InputError
+from seatlook.files import reader, write_text
 from seatlook.io.pattern.allowance import only_cut, with_edge_allowances
 from seatlook.io.pattern.dxf import read_dxf
 from seatlook.io.pattern.units import Units
 from seatlook.io.schema import (
+    FAR_MM,
     MM,
     Array,
     Flag,
@@ -50,8 +51,8 @@ _KEYS: dict[str, Kind] = {
         Table(
             {
                 "panel": Text(required=True),
-                "from_mm": Array(shape=(2,), required=True),
-                "to_mm": Array(shape=(2,), required=True),
+                "from_mm": Array(shape=(2,), low=-FAR_MM, high=FAR_MM, required=True),
+                "to_mm": Array(shape=(2,), low=-FAR_MM, high=FAR_MM, required=True),
                 "allowance_mm": Number(low=0, high=100, scale=MM),
             }
         ),
@@ -64,7 +65,7 @@ _KEYS: dict[str, Kind] = {
                 "a": Text(required=True),
                 "b": Texts(or_one=True, required=True),
                 "reverse": Flag(default=True),
-                "pitch_mm": Number(above=0, high=50, scale=MM, default=5.0),
+                "pitch_mm": Number(low=0.1, high=50, scale=MM, default=5.0),
                 "length_mm": Number(above=0),
                 "length_b_mm": Number(above=0),
             }
@@ -84,6 +85,7 @@ class Reading(TypedDict, total=False):
     allowance: float | None
 
 
+@reader("a pattern")
 def read_panels(path: Path, **reading: Unpack[Reading]) -> tuple[Panel, ...]:
     """Read the panels of a pattern file of any format in ``READERS``."""
     reader = READERS.get(path.suffix.lower())
@@ -93,6 +95,7 @@ def read_panels(path: Path, **reading: Unpack[Reading]) -> tuple[Panel, ...]:
     return reader(path, **reading)
 
 
+@reader("a pattern")
 def read_pattern(path: Path, seams: Path, **reading: Unpack[Reading]) -> Pattern:
     """Read a pattern and how it is sewn.
 
@@ -112,6 +115,7 @@ def read_pattern(path: Path, seams: Path, **reading: Unpack[Reading]) -> Pattern
     return read_seams(seams, read_panels(path, **reading), reading.get("allowance") or 0.0)
 
 
+@reader("a seams file")
 def read_seams(path: Path, panels: tuple[Panel, ...], allowance: float = 0.0) -> Pattern:
     """Read the seams file of ``panels``, whose sew lines lie ``allowance`` [m] inside."""
     document = read_document(path)
@@ -173,7 +177,7 @@ def _edge(
         return None
     panel = panels.get(values["panel"])
     if panel is None:
-        hint = did_you_mean(values["panel"], panels)
+        hint = document.hint(values["panel"], panels)
         document.report(
             (*key, "panel"), shown(values["panel"]), f"one of {', '.join(panels)}", hint
         )
@@ -214,7 +218,7 @@ def _check_names(
             if name is not None and name not in edges:
                 expected = "an edge of this file"
                 document.report(
-                    ("seam", number, side), shown(name), expected, did_you_mean(name, edges)
+                    ("seam", number, side), shown(name), expected, document.hint(name, edges)
                 )
     if values["b"] and values["a"] in values["b"]:
         document.report(("seam", number, "b"), shown(values["a"]), "another edge than a")

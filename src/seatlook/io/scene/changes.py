@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable
 from typing import Any
 
 from seatlook.errors import InputError, did_you_mean
-from seatlook.io.toml import Document
+from seatlook.io.schema import shown
+from seatlook.io.toml import DEEPEST, Document
 
 EXPECTED = "KEY=VALUE, such as mesh.seed=3 or rig.sun.ev100=14"
 
@@ -37,12 +39,17 @@ def _parsed(word: str) -> tuple[list[str], Any]:
     name, equals, text = word.partition("=")
     for value in (text, f'"{text}"'):
         try:
+            # A word that is no UTF-8 comes from the command line as half pairs.
+            word.encode()
             parsed = tomllib.loads(f"{name} = {value}")
-        except tomllib.TOMLDecodeError:
+            keys, changed = _path(parsed)
+            repr((keys, changed))
+        # Beside what is no TOML: numbers that Python does not read, brackets without end.
+        except (ValueError, RecursionError):
             continue
-        if equals and "\n" not in word:
-            return _path(parsed)
-    raise InputError.single("--set", got=repr(word), expected=EXPECTED)
+        if equals and "\n" not in word and len(keys) <= DEEPEST:
+            return keys, changed
+    raise _refusal(word, EXPECTED)
 
 
 def _path(parsed: dict[str, Any]) -> tuple[list[str], Any]:
@@ -55,9 +62,17 @@ def _path(parsed: dict[str, Any]) -> tuple[list[str], Any]:
             return keys, node
 
 
+def _refusal(word: str, expected: str, hint: str = "") -> InputError:
+    return InputError.single("--set", got=shown(word), expected=expected, hint=hint)
+
+
 def _put(data: dict[str, Any], keys: list[str], value: Any, word: str) -> None:
     node: Any = data
+    before = ""
     for key, following in zip(keys, [*keys[1:], None], strict=True):
+        if not isinstance(node, dict | list):
+            raise _refusal(word, f"{before} to be a table")
+        before = key
         if isinstance(node, list):
             index = _row(node, key, word)
             if following is None:
@@ -65,27 +80,18 @@ def _put(data: dict[str, Any], keys: list[str], value: Any, word: str) -> None:
             node = node[index]
         elif following is None:
             node[key] = value
-        elif isinstance(node.get(key), dict | list):
-            node = node[key]
-        elif key in node:
-            raise InputError.single("--set", got=repr(word), expected=f"{key} to be a table")
         else:
-            node[key] = {}
-            node = node[key]
+            node = node.setdefault(key, {})
 
 
 def _row(rows: list[Any], key: str, word: str) -> int:
     """Find a row by its number or its name."""
-    if key.isdigit() and int(key) < len(rows):
+    if re.fullmatch("[0-9]{1,9}", key) and int(key) < len(rows):
         return int(key)
     names = [str(row.get("name", "")) if isinstance(row, dict) else "" for row in rows]
     if key in names:
         return names.index(key)
     listed = [name for name in names if name]
-    raise InputError.single(
-        "--set",
-        got=repr(word),
-        expected=f"a row from 0 to {len(rows) - 1}"
-        + (f", or one of {', '.join(listed)}" if listed else ""),
-        hint=did_you_mean(key, listed),
-    )
+    expected = f"a row from 0 to {len(rows) - 1}"
+    expected += f", or one of {', '.join(listed)}" if listed else ""
+    raise _refusal(word, expected, did_you_mean(key, listed))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from seatlook.errors import InputError
+from seatlook.files import opened, state_of
 from seatlook.io.schema import shown
 from seatlook.io.toml import Document, Key
 
@@ -22,6 +23,7 @@ class SceneFiles:
 
     document: Document
     _digests: dict[Path, bytes] = field(default_factory=dict)
+    _states: dict[Path, object] = field(default_factory=dict)
 
     def find(self, key: Key, name: str | None, path: Path | None = None) -> Path | None:
         """Count a file that the scene names and return its path, or report why it cannot be read.
@@ -38,7 +40,8 @@ class SceneFiles:
             self.count(path)
         except InputError as error:
             for p in error.problems:
-                self.document.report(key, shown(name), p.expected, f"{p.got} at {path}")
+                got = "there is none" if p.got == "no such file" else p.got
+                self.document.report(key, shown(name), p.expected, f"{got} at {path}")
             return None
         return path
 
@@ -48,24 +51,29 @@ class SceneFiles:
         Raises
         ------
         InputError
-            There is no such file, or it cannot be read.
+            There is no such file, it is none that can be read, or is being written.
         """
         if path in self._digests:
             return
-        problem = "there is none"
-        content = None
-        try:
-            if path.is_file():
-                with path.open("rb") as stream:
-                    content = hashlib.file_digest(stream, "sha256").digest()
-        except OSError as error:
-            problem = str(error.strerror)
-        if content is None:
-            raise InputError.single("file", got=problem, expected="a file", file=path)
+        with opened(path) as stream:
+            self._states[path] = state_of(path)
+            content = hashlib.file_digest(stream, "sha256").digest()
         # The name counts as well: it says which texture map a picture is.
         self._digests[path] = hashlib.sha256(path.name.encode() + b"\0" + content).digest()
 
     def digest(self) -> str:
-        """Hash names and contents in the order in which they were counted, not the folders."""
+        """Hash names and contents in the order in which they were counted, not the folders.
+
+        Raises
+        ------
+        InputError
+            A file was changed after it was counted, so that another content may have been read.
+        """
+        for path, state in self._states.items():
+            if state_of(path) != state:
+                raise InputError.single(
+                    "file", got="a file that changed while the scene was read",
+                    expected="one that stays", file=path, hint="try again",
+                )  # fmt: skip
         scene = hashlib.sha256(self.document.content).digest()
         return hashlib.sha256(b"".join([scene, *self._digests.values()])).hexdigest()

@@ -9,7 +9,9 @@ from seatlook.io.colour import Colour
 from seatlook.io.pattern.units import UNITS as PATTERN_UNITS
 from seatlook.io.scene.views import CAMERA, RIG
 from seatlook.io.schema import (
+    FAR_MM,
     MM,
+    THRESHOLD,
     Array,
     Flag,
     Integer,
@@ -22,11 +24,12 @@ from seatlook.io.schema import (
     Texts,
 )
 from seatlook.io.surface.axes import UNITS, UPS
-from seatlook.model.cover import RAMPS
-from seatlook.model.scene import ALLOWED, SCORE_MEASURES
+from seatlook.model.scene import ALLOWED, ELEMENT_SIZES, LARGEST_SEED, SCORE_MEASURES
+from seatlook.model.stage import LONGEST, RAMPS, SHORTEST
 from seatlook.wrinkle import INDICES
 
 AS_BUILT = "as built"
+FINEST_MM, COARSEST_MM = (1e3 * size for size in ELEMENT_SIZES)
 _NAME = Text(required=True)
 
 KEYS: dict[str, Kind] = {
@@ -40,7 +43,7 @@ KEYS: dict[str, Kind] = {
             "size": Text(),
             "units": Text(choices=PATTERN_UNITS),
             "encoding": Text(),
-            "grain_deg": Number(),
+            "grain_deg": Number(low=-360, high=360),
             "allowance_mm": Number(above=0, high=100, scale=MM),
             "material": Text(),
         },
@@ -72,9 +75,9 @@ KEYS: dict[str, Kind] = {
     "check": Table({"allow": Texts(choices=ALLOWED, default=())}),
     "mesh": Table(
         {
-            "element_size_mm": Number(low=0.5, high=100, scale=MM, required=True),
+            "element_size_mm": Number(low=FINEST_MM, high=COARSEST_MM, scale=MM, required=True),
             "smallest_notch_mm": Number(low=0, high=100, scale=MM, default=5.0),
-            "seed": Integer(default=0),
+            "seed": Integer(high=LARGEST_SEED, default=0),
         },
         required=True,
     ),
@@ -83,7 +86,9 @@ KEYS: dict[str, Kind] = {
             {
                 "axes": Texts(),
                 "rotation": Array(shape=(3, 3)),
-                "translation_mm": Array(shape=(3,), scale=MM, required=True),
+                "translation_mm": Array(
+                    shape=(3,), low=-FAR_MM, high=FAR_MM, scale=MM, required=True
+                ),
             }
         )
     ),
@@ -92,7 +97,7 @@ KEYS: dict[str, Kind] = {
             {
                 "material": Text(),
                 "grain_deg": Number(low=-360, high=360),
-                "element_size_mm": Number(low=0.5, high=100, scale=MM),
+                "element_size_mm": Number(low=FINEST_MM, high=COARSEST_MM, scale=MM),
             }
         )
     ),
@@ -100,8 +105,8 @@ KEYS: dict[str, Kind] = {
         Table(
             {
                 "name": _NAME,
-                "start_s": Number(low=0, required=True),
-                "end_s": Number(above=0, required=True),
+                "start_s": Number(low=0, high=LONGEST, required=True),
+                "end_s": Number(low=SHORTEST, high=LONGEST, required=True),
                 "ramp": Text(choices=RAMPS, default="linear"),
                 "group": Text(),
                 "seams": Texts(or_one=True, default=()),
@@ -115,11 +120,11 @@ KEYS: dict[str, Kind] = {
                 **dict.fromkeys(("name", "wire", "stage"), _NAME),
                 "line": Text(),
                 "chain": Texts(),
-                "junctions_mm": Array(shape=(None,), low=0, scale=MM),
-                "pitch_mm": Number(above=0, high=1000, scale=MM),
-                "from_mm": Number(low=0, scale=MM, default=0.0),
-                "to_mm": Number(above=0, scale=MM),
-                "limit_n": Number(above=0),
+                "junctions_mm": Array(shape=(None,), low=0, high=FAR_MM, scale=MM),
+                "pitch_mm": Number(low=1, high=1000, scale=MM),
+                "from_mm": Number(low=0, high=FAR_MM, scale=MM, default=0.0),
+                "to_mm": Number(above=0, high=FAR_MM, scale=MM),
+                "limit_n": Number(low=1e-3, high=1e6),
             }
         )
     ),
@@ -141,8 +146,8 @@ KEYS: dict[str, Kind] = {
         {
             "colour": Colour(),
             "offset_mm": Number(low=0, high=20, scale=MM, default=5.0),
-            "pitch_mm": Number(above=0, high=50, scale=MM, default=5.0),
-            "length_mm": Number(above=0, high=50, scale=MM, default=4.0),
+            "pitch_mm": Number(low=0.5, high=50, scale=MM, default=5.0),
+            "length_mm": Number(low=0.1, high=50, scale=MM, default=4.0),
             "width_mm": Number(low=0, high=5, scale=MM, default=0.9),
         }
     ),
@@ -153,8 +158,12 @@ KEYS: dict[str, Kind] = {
                     {
                         "name": _NAME,
                         "panel": _NAME,
-                        "low_mm": Array(shape=(2,), scale=MM, required=True),
-                        "high_mm": Array(shape=(2,), scale=MM, required=True),
+                        "low_mm": Array(
+                            shape=(2,), low=-FAR_MM, high=FAR_MM, scale=MM, required=True
+                        ),
+                        "high_mm": Array(
+                            shape=(2,), low=-FAR_MM, high=FAR_MM, scale=MM, required=True
+                        ),
                         "class": Text(choices=("A", "B", "C"), default="A"),
                     }
                 )
@@ -164,7 +173,7 @@ KEYS: dict[str, Kind] = {
     "wrinkle": Table(
         {
             "curvature": Text(choices=("tensor", "paper"), default="tensor"),
-            "c_threshold_per_mm": Number(above=0, scale=1 / MM),
+            "c_threshold_per_mm": THRESHOLD,
         }
     ),
 }

@@ -14,6 +14,7 @@ from typing import Any, cast
 import numpy as np
 
 from seatlook.errors import InputError
+from seatlook.files import reader
 from seatlook.io.material import material_path, read_foam_material, read_material
 from seatlook.io.pattern.dxf import SMALLEST_NOTCH
 from seatlook.io.pattern.seams import read_pattern
@@ -29,7 +30,7 @@ from seatlook.io.scene.files import SceneFiles
 from seatlook.io.scene.keys import AS_BUILT, scene_keys
 from seatlook.io.scene.ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
 from seatlook.io.scene.views import make_cameras, make_rigs
-from seatlook.io.schema import known, read_table
+from seatlook.io.schema import known, read_table, shown
 from seatlook.io.surface.design import read_surface
 from seatlook.io.surface.foam import read_foam
 from seatlook.io.surface.formats import named_files
@@ -56,6 +57,7 @@ _AXES = {
 }
 
 
+@reader("a scene")
 def load_scene(path: Path | str, *, changes: Iterable[str] = ()) -> Scene:
     """Read a scene and every file it names; paths in it are seen from its own folder.
 
@@ -272,9 +274,15 @@ class _Reader:
         looks: dict[str, Appearance | None] = {}
         for name in self.row["gallery"]["textures"] or ():
             if name == AS_BUILT:
-                looks[name] = None
+                own, look = name, None
             elif (material := self.material(("gallery", "textures"), name)) is not None:
-                looks[material.name] = material.appearance
+                own, look = material.name, material.appearance
+            else:
+                continue
+            if own in looks:
+                expected = f"textures of different names, {own!r} is one already"
+                self.document.report(("gallery", "textures"), shown(name), expected)
+            looks[own] = look
         return MappingProxyType(looks)
 
     def placement(self, pattern: Pattern | None) -> MappingProxyType[str, Pose]:

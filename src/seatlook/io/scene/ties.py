@@ -16,7 +16,7 @@ from seatlook.io.toml import Document, Key
 from seatlook.mesh import length
 from seatlook.model import Foam, Frame, Hook, Limit, Pattern, Stage, ZoneBox, stage_units
 from seatlook.model.scene import SCORE_MEASURES
-from seatlook.model.zones import FREE_EDGE, zones
+from seatlook.model.zones import FREE_EDGE, built_in_zones, zones
 
 Row = dict[str, Any]
 
@@ -179,6 +179,9 @@ def make_boxes(document: Document, rows: list[Row], pattern: Pattern | None) -> 
             known(document, (*key, "panel"), row["panel"], panels, "a panel of the pattern")
         if any(value is None for value in row.values()):
             continue
+        if pattern is not None and row["name"] in built_in_zones(pattern):
+            expected = "a name of its own: a zone or class is called so already"
+            document.report((*key, "name"), repr(row["name"]), expected)
         low, high = row["low_mm"], row["high_mm"]
         if not (low < high).all():
             expected = f"above low_mm, {(1e3 * low).round(6).tolist()}"

@@ -12,7 +12,7 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.io.panorama import read_panorama
 from seatlook.io.scene.files import SceneFiles
-from seatlook.io.schema import MM, Array, Kind, Number, Rows, Table, Text, Texts
+from seatlook.io.schema import FAR_MM, MM, Array, Kind, Number, Rows, Table, Text, Texts, place_mm
 from seatlook.io.toml import Document, Key
 from seatlook.model import (
     LIGHTS,
@@ -26,7 +26,7 @@ from seatlook.model import (
     named_view,
     sphere_distance,
 )
-from seatlook.model.light import DISTANCE
+from seatlook.model.light import BRIGHTEST, DISTANCE
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,28 +71,28 @@ def arguments(make: Callable[..., Light]) -> dict[str, Kind]:
 
 
 SIZE = Array(shape=(2,), low=16, high=16384)
-POINT = Array(shape=(3,), scale=MM)
+POINT = place_mm(3, required=False)
 
 RIG: dict[str, Kind] = {
     "name": Text(required=True),
     "ambient_cd_m2": Number(low=0, high=1e6, default=0.0),
     "panorama": Text(),
-    "panorama_cd_m2": Number(above=0, default=1.0),
+    "panorama_cd_m2": Number(low=1e-9, high=BRIGHTEST, default=1.0),
     "ev100": Number(low=-10, high=30),
     "light": Rows(LightTable()),
 }
 CAMERA: dict[str, Kind] = {
     "views": Texts(choices=tuple(VIEWS), or_one=True, default=("front_34",)),
     "target_mm": POINT,
-    "distance_mm": Number(above=0, scale=MM),
+    "distance_mm": Number(low=10, high=FAR_MM, scale=MM),
     "size": SIZE,
     "custom": Rows(
         Table(
             {
                 "name": Text(required=True),
-                "position_mm": Array(shape=(3,), scale=MM, required=True),
+                "position_mm": place_mm(3),
                 "target_mm": POINT,
-                "up": Array(shape=(3,)),
+                "up": Array(shape=(3,), low=-1e3, high=1e3),
                 "vertical_fov_deg": Number(low=1, high=120),
                 "size": SIZE,
             }

@@ -9,11 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.files import write_text
+from seatlook.files import read_file, reader, write_text
 from seatlook.io.schema import shown
 from seatlook.io.surface.axes import Axes, Unit, Up, file_axes
 from seatlook.io.surface.formats import joined, read_parts
-from seatlook.io.toml import read_file
 from seatlook.model import FloatArray, IntArray
 
 _SAME_M = 1e-6
@@ -34,6 +33,7 @@ class GroupedMesh(NamedTuple):
     panel_names: tuple[str, ...]
 
 
+@reader("a design surface")
 def read_surface(
     path: Path, *, unit: Unit | None = None, up: Up | None = None, ungrouped: str | None = None
 ) -> GroupedMesh:
@@ -92,7 +92,9 @@ def _named(path: Path, ungrouped: str | None) -> GroupedMesh:
 
 
 def _read_obj(path: Path, ungrouped: str | None) -> GroupedMesh:
-    lines = read_file(path).decode(errors="replace").splitlines()
+    text = read_file(path).decode("utf-8-sig", errors="replace")
+    # Other ends of lines than these may be in names.
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     has_groups = any(line.split(None, 1)[:1] == ["g"] for line in lines)
     reader = _ObjReader(path, "g" if has_groups else "o")
     if ungrouped is not None:

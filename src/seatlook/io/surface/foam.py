@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatlook.errors import InputError, InputWarning
+from seatlook.files import reader
 from seatlook.io.curves import read_curves
 from seatlook.io.surface.axes import Axes, Unit, Up, file_axes
 from seatlook.io.surface.formats import joined, read_parts
@@ -40,6 +41,7 @@ class FoamSurface(NamedTuple):
     mended: tuple[Mend, ...]
 
 
+@reader("a closed surface")
 def read_foam(
     path: Path,
     *,
@@ -73,6 +75,7 @@ def read_foam(
     )
 
 
+@reader("a closed surface")
 def read_foam_surface(
     path: Path,
     *,

@@ -12,8 +12,8 @@ import numpy as np
 import trimesh
 
 from seatlook.errors import InputError
+from seatlook.files import read_file
 from seatlook.io.schema import shown
-from seatlook.io.toml import read_file
 from seatlook.model import FloatArray, IntArray
 
 
@@ -120,7 +120,7 @@ _COMPRESSIONS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 
 def _gltf_header(path: Path) -> dict[str, Any]:
     """Return the JSON of a glTF file."""
-    content = path.read_bytes()
+    content = read_file(path)
     if content[:4] == b"glTF":
         (length,) = struct.unpack_from("<I", content, 12)
         content = content[20 : 20 + length]
@@ -137,7 +137,7 @@ def named_files(path: Path) -> list[Path]:
     try:
         buffers = _gltf_header(path).get("buffers", [])
         names = [buffer["uri"] for buffer in buffers if "uri" in buffer]
-    except (ValueError, TypeError, KeyError, OSError):
+    except (ValueError, TypeError, KeyError, struct.error, RecursionError):
         return []  # what is wrong with it, its reader says
     return [path.parent / name for name in names if not str(name).startswith("data:")]
 

@@ -6,6 +6,7 @@ family of its own with every new mesh: ``d3plotaa``, ``d3plotab``, ...
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.errors import InputError
+from seatlook.files import opened
 from seatlook.io.lsdyna.d3plot.layout import Layout, Words, is_end
 from seatlook.io.lsdyna.d3plot.row import refuse
 
@@ -87,18 +89,14 @@ def _names(file: Path) -> list[str]:
 
 def head_of(file: Path) -> bytes:
     """Return the first bytes, which tell the size of a word."""
-    try:
-        with file.open("rb") as stream:
-            return stream.read(512)
-    except FileNotFoundError as error:
-        raise refuse(file, "file", "no such file", "a d3plot file") from error
-    except OSError as error:
-        raise refuse(file, "file", error.strerror, "a readable file") from error
+    with opened(file) as stream:
+        return stream.read(512)
 
 
 def map_words(file: Path, word: str) -> Words:
     """Map a file as words, of which only what is used is read."""
-    size = file.stat().st_size
+    with opened(file) as stream:
+        size = os.fstat(stream.fileno()).st_size
     if size < int(word[2]):
         raise InputError.single("file", got=f"{size} bytes", expected="a d3plot file", file=file)
     return np.memmap(file, dtype=word, mode="r", shape=(size // int(word[2]),))

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from seatlook.files import reader
 from seatlook.io.lsdyna.d3plot.family import (
     Stored,
     family_of,
@@ -38,6 +40,7 @@ from seatlook.model import FloatArray, ShellResult, ShellState
 from seatlook.model.shells import StrainAxes
 
 
+@reader("a d3plot file")
 def read_d3plot(
     path: Path,
     *,
@@ -91,14 +94,19 @@ def read_d3plot(
     empty = _without_thickness(layout, states)
     table = replace(table, usable=layout.reported & ~empty)
     chosen = select(table, parts, reference=start.reshape(n, 3).astype(np.float64) * scale)
-    reader = _Reader(layout, chosen, states, scale, thickness, strain_axes)
+    states_read = _Reader(layout, chosen, states, scale, thickness, strain_axes)
     notes = (remeshed, note, *_notes(layout, table, chosen, empty))
     return ShellResult(
         shells=chosen.shells,
         times=np.array([s.time for s in states]),
-        read=reader.read,
+        read=partial(_read_state, file, states_read),
         notes=tuple(text for text in notes if text),
     )
+
+
+@reader("a d3plot file")
+def _read_state(file: Path, states: _Reader, index: int) -> ShellState:
+    return states.read(index)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.errors import InputError
+from seatlook.files import read_file
 from seatlook.io.lsdyna.deck.cards import Block, refuse
 from seatlook.io.lsdyna.deck.composite import composite_shells
 from seatlook.io.lsdyna.deck.includes import deck_blocks
@@ -15,7 +16,6 @@ from seatlook.io.lsdyna.deck.parameters import parameters
 from seatlook.io.lsdyna.deck.parts import read_parts, read_sections
 from seatlook.io.lsdyna.deck.placement import shifted
 from seatlook.io.lsdyna.deck.transformation import Transformations, read_transformations
-from seatlook.io.toml import read_file
 from seatlook.model import FloatArray, IntArray
 
 # Keywords that move or add shells, or give them a thickness, in a way that is not followed here.

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 
 from seatlook.errors import InputError
+from seatlook.files import read_file
 from seatlook.io.lsdyna.deck.cards import Block, blocks, refuse
 from seatlook.io.lsdyna.deck.placement import DECK, Move, Placement
-from seatlook.io.toml import read_file
 
 _MAX_INCLUDES = 100
 _GOES_ON = b" +"

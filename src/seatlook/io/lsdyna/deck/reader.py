@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from seatlook.errors import InputError
+from seatlook.files import reader
 from seatlook.io.lsdyna.deck.content import Deck, read_deck
 from seatlook.io.lsdyna.deck.initial_strain import SurfaceStrains, surface_strains
 from seatlook.io.lsdyna.deck.shell_sets import shell_sets
@@ -28,6 +29,7 @@ from seatlook.io.lsdyna.element_tables import (
 from seatlook.model import FloatArray, IntArray, ShellResult, ShellState
 
 
+@reader("a keyword deck")
 def read_keyword(
     path: Path,
     *,

@@ -13,9 +13,9 @@ from ezdxf.lldxf.encoding import decode_dxf_unicode
 from ezdxf.lldxf.validator import is_valid_block_name
 
 from seatlook.errors import InputError
+from seatlook.files import read_file
 from seatlook.io.pattern.drawing.encoding import decode
 from seatlook.io.pattern.drawing.log import listening, loses_a_piece
-from seatlook.io.toml import read_file
 
 _BINARY = b"AutoCAD Binary DXF"
 _STAND_IN = "seatlook-block-"

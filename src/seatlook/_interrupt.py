@@ -1,0 +1,47 @@
+"""Ctrl-C and SIGTERM: one way out, wherever they arrive, also in compiled code or an import."""
+
+from __future__ import annotations
+
+import _thread
+import os
+import signal
+import threading
+from types import FrameType
+
+EXIT_CODE = 130
+_AGAIN = 5.0  # [s] after which code that swallowed an interrupt is interrupted again
+
+_process = os.getpid()
+_asked = threading.Event()
+
+
+def heed() -> None:
+    """Make both signals of this process end it by KeyboardInterrupt."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        # A shell has what it starts in the background ignore Ctrl-C.
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _interrupt)
+
+
+def ignore() -> None:
+    """Ignore both signals: the exit code is known, and only the end is left to come."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+
+
+def asked() -> bool:
+    """Whether an interrupt came: what compiled code makes of it is another error."""
+    return _asked.is_set()
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    if os.getpid() != _process:
+        # A forked worker has nothing to tidy up.
+        signal.signal(number, signal.SIG_DFL)
+        os.kill(os.getpid(), number)
+        return
+    _asked.set()
+    timer = threading.Timer(_AGAIN, _thread.interrupt_main)
+    timer.daemon = True
+    timer.start()
+    raise KeyboardInterrupt
