@@ -3,11 +3,13 @@
 #   make test       the tests that take under 20 s each
 #   make validate   the long ones: convergence, fuzzing, path tracing
 #   make browser    the gallery page and the GLB in headless Chromium
+#   make fuzz       damage to files of every format: what comes out of its reader
 #   make check      style, types, import contract, spelling
 #   make bench      timings
 #   make docs       the reference, from the docstrings, in out/reference
 VENV ?= .venv
 OUT ?= out/demo
+COUNT ?= 10000
 BIN := $(VENV)/bin
 PYTEST := $(BIN)/python -m pytest -q
 TESTS := --doctest-modules tests src/seatlook
@@ -19,7 +21,7 @@ MODULES := $(shell cd src && find seatlook -name '[a-z]*.py' -not -path '*/cli/*
 # Numba sees a change in the file of a kernel, not in the files of the kernels it calls.
 export NUMBA_CACHE_DIR ?= $(CURDIR)/.numba_cache/$(shell find src -path "*/kernels/*.py" | LC_ALL=C sort | xargs cat | cksum | cut -d ' ' -f 1)
 
-.PHONY: demo test validate browser check format bench docs clean
+.PHONY: demo test validate browser fuzz check format bench docs clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.gl
@@ -37,6 +39,10 @@ browser: $(VENV)/.gl $(VENV)/.dev $(VENV)/.browser
 
 bench: $(VENV)/.gl $(VENV)/.dev
 	$(PYTEST) -m bench --timeout 3600 tests
+
+# Paths of the environment are seen from here.
+fuzz: $(VENV)/.dev
+	cd tests && $(abspath $(BIN))/python -m support.fuzz --cover --count $(COUNT)
 
 check: $(VENV)/.dev
 	$(BIN)/ruff check .

@@ -11,9 +11,33 @@ import numpy as np
 
 from seatlook.files import write_text
 
+# A table calculation takes a cell that begins so for a formula, and runs it.
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "'")
+
+
+def cell(value: object) -> object:
+    """Mark a text that a table calculation would run with an apostrophe, as its users do.
+
+    Examples
+    --------
+    >>> cell("=1+1"), cell("seam A"), cell(-0.5), cell("-0.5")
+    ("'=1+1", 'seam A', -0.5, '-0.5')
+    """
+    if isinstance(value, str) and value.startswith(_FORMULA) and not _is_number(value):
+        return f"'{value}"
+    return value
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
 
 def write_table(path: Path, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-    """Write heads and rows; None is an empty cell.
+    """Write heads and rows; None is an empty cell, and texts are ``cell`` s.
 
     Examples
     --------
@@ -21,8 +45,8 @@ def write_table(path: Path, heads: Sequence[str], rows: Iterable[Sequence[object
     """
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows(rows)
+    writer.writerow(map(cell, heads))
+    writer.writerows(map(cell, row) for row in rows)
     write_text(path, buffer.getvalue())
 
 

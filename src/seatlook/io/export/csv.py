@@ -9,6 +9,7 @@ from pathlib import Path
 
 from seatlook.files import write_text
 from seatlook.io.export.vtp import voigt
+from seatlook.io.table import cell
 from seatlook.model import Field, FloatArray, Solution
 
 
@@ -35,6 +36,6 @@ def write_csv(solution: Solution, fields: Sequence[Field], path: Path) -> None:
     writer.writerow(["face", "panel", "zone", *columns])
     values = zip(*(column.tolist() for column in columns.values()), strict=True)
     for face, row in enumerate(values):
-        panel = cover.panel_names[cover.panel[face]]
-        writer.writerow([face, panel, cover.zone_names[cover.zone[face]], *row])
+        panel, zone = cover.panel_names[cover.panel[face]], cover.zone_names[cover.zone[face]]
+        writer.writerow([face, cell(panel), cell(zone), *row])
     write_text(path, buffer.getvalue())

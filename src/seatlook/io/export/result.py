@@ -122,6 +122,9 @@ def _packed(value: Any, at: str, arrays: dict[str, Any]) -> Any:
     if isinstance(value, np.ndarray):
         # Panels of one material share its maps, which are large.
         at = next((name for name, other in arrays.items() if other is value), at)
+        # A name of the user's may be none for a file, or that of another array.
+        if not at.isprintable() or arrays.get(at, value) is not value:
+            at = f"array {len(arrays)}"
         arrays[at] = value
         return {"array": at}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):

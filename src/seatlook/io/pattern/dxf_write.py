@@ -130,5 +130,13 @@ def _texts(texts: Iterable[str], at: FloatArray, *, layer: str = BOUNDARY) -> It
 def _spelled(value: object) -> str:
     if isinstance(value, float):
         return repr(float(value))
-    # Characters beyond ASCII are written as AutoCAD spells them.
-    return "".join(c if c.isascii() else f"\\U+{ord(c):04X}" for c in str(value))
+    # Characters beyond ASCII are written as AutoCAD spells them, by their halves where they are
+    # wide; so are those that would end a line, and the backslash with which such spellings begin.
+    return "".join(
+        c if c.isascii() and c.isprintable() and c != "\\" else _escaped(c) for c in str(value)
+    )
+
+
+def _escaped(character: str) -> str:
+    units = character.encode("utf-16-be", "surrogatepass")
+    return "".join(f"\\U+{units[k]:02X}{units[k + 1]:02X}" for k in range(0, len(units), 2))

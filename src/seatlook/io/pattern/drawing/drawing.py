@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import ezdxf.filemanagement
-from ezdxf.lldxf.encoding import decode_dxf_unicode
 from ezdxf.lldxf.validator import is_valid_block_name
 
 from seatlook.errors import InputError
 from seatlook.files import read_file
-from seatlook.io.pattern.drawing.encoding import decode
+from seatlook.io.pattern.drawing.encoding import decode, spelled_out
 from seatlook.io.pattern.drawing.log import listening, loses_a_piece
 
 _BINARY = b"AutoCAD Binary DXF"
@@ -41,7 +40,7 @@ class Drawing:
 
     def name_of(self, block: str) -> str:
         """Return the name that the file gives to a block."""
-        return decode_dxf_unicode(self.names.get(block, block))
+        return spelled_out(self.names.get(block, block))
 
 
 def open_drawing(path: Path, encoding: str | None = None) -> Drawing:
@@ -103,7 +102,7 @@ def _with_safe_names(
             places.setdefault((entity + code, value.casefold()), []).append(k)
     doubled = _doubled(places, path)
     if doubled:
-        shown = ", ".join(decode_dxf_unicode(name) for name in doubled)
+        shown = ", ".join(spelled_out(name) for name in doubled)
         notes.append(f"several blocks have one name, each is a piece: {shown}")
     stand_ins: dict[tuple[str, int], str] = {}
     for (_, name), rows in places.items():
@@ -127,7 +126,7 @@ def _doubled(places: Mapping[tuple[str, str], list[int]], path: Path) -> list[st
             if inserts not in (0, len(rows)):
                 raise InputError.single(
                     "blocks",
-                    got=f"{len(rows)} blocks called {decode_dxf_unicode(name)}, put in {inserts} "
+                    got=f"{len(rows)} blocks called {spelled_out(name)}, put in {inserts} "
                     "places",
                     expected="a name for each",
                     file=path,

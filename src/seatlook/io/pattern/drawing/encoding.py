@@ -7,6 +7,7 @@ import re
 import unicodedata
 from pathlib import Path
 
+from ezdxf.lldxf.encoding import decode_dxf_unicode
 from ezdxf.tools.codepage import toencoding
 
 from seatlook.errors import InputError
@@ -58,6 +59,18 @@ def guess_encoding(content: bytes) -> str:
     'cp1252'
     """
     return max(_GUESSED, key=lambda name: _likeness(content, name))
+
+
+def spelled_out(text: str) -> str:
+    r"""Return a text in which characters may be spelled as AutoCAD does, wide ones by halves.
+
+    Examples
+    --------
+    >>> spelled_out(r"N\U+00E4ht \U+D83E\U+DEA1")
+    'Näht 🪡'
+    """
+    decoded = decode_dxf_unicode(text)
+    return decoded.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
 
 
 def _decode_as(content: bytes, path: Path, encoding: str) -> str:

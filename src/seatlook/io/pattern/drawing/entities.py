@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import ezdxf.path
 import numpy as np
-from ezdxf.lldxf.encoding import decode_dxf_unicode
 
+from seatlook.io.pattern.drawing.encoding import spelled_out
 from seatlook.io.pattern.drawing.layers import LINE_LAYERS, UNREAD, meaning
 from seatlook.model import FloatArray
 
@@ -171,4 +171,4 @@ def _moved_point(place: Any, scale: float, matrix: FloatArray | None) -> tuple[F
 
 def _text(entity: Any) -> str:
     text = entity.plain_text() if entity.dxftype() == "MTEXT" else entity.dxf.text
-    return decode_dxf_unicode(text).strip()
+    return spelled_out(text).strip()
