@@ -25,7 +25,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 MIB = 2**20
-# Bytes of a file that is read at once; docs/reference/limits.md lists all limits.
+# Bytes of a file that is read at once; docs/reference/bad-input.md lists all limits.
 LARGEST_FILE = 512 * MIB
 LARGEST_TEXT = 4 * MIB  # of scenes, seams, curves, materials, sweeps, votes
 

@@ -76,7 +76,7 @@ def test_a_size_that_its_content_cannot_have(tmp_path, problems):
 
 
 def test_more_than_all_arrays_may_have(tmp_path, problems, monkeypatch):
-    monkeypatch.setattr(npz, "_LARGEST", 1000)
+    monkeypatch.setattr(npz, "LARGEST", 1000)
     npz.write_npz({"a": np.zeros(80), "b": np.zeros(80)}, tmp_path / "a.npz")
     (got,) = problems(npz.read_npz, tmp_path / "a.npz", expected="arrays")
     assert "got ValueError: arrays of 1536 bytes, expected arrays" in got

@@ -13,13 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError
-from seatlook.files import read_file, write_bytes
+from seatlook.files import MIB, read_file, write_bytes
 
 Arrays = dict[str, npt.NDArray[Any]]
 
 # No content makes more of a byte (RFC 1951: 258 bytes of two codes of one bit each).
 _DEFLATE = 1032
-_LARGEST = 2**32  # bytes of all arrays
+LARGEST = 640 * MIB  # of all arrays
 
 
 def write_npz(arrays: Mapping[str, npt.NDArray[Any]], path: Path) -> None:
@@ -40,7 +40,7 @@ def read_npz(path: Path, *, expected: str) -> Arrays:
     ------
     InputError
         The file is absent, cut short, damaged, encrypted, another format, holds objects, or would
-        take more than 4 GiB.
+        take more than 640 MiB.
     """
     content = read_file(path)
     try:
@@ -64,7 +64,7 @@ def _check_sizes(entries: list[zipfile.ZipInfo]) -> None:
         if entry.file_size > most:
             raise ValueError(f"{entry.filename}: {entry.file_size} bytes out of {most} at most")
     size = sum(entry.file_size for entry in entries)
-    if size > _LARGEST:
+    if size > LARGEST:
         raise ValueError(f"arrays of {size} bytes")
 
 

@@ -126,8 +126,7 @@ def _doubled(places: Mapping[tuple[str, str], list[int]], path: Path) -> list[st
             if inserts not in (0, len(rows)):
                 raise InputError.single(
                     "blocks",
-                    got=f"{len(rows)} blocks called {spelled_out(name)}, put in {inserts} "
-                    "places",
+                    got=f"{len(rows)} blocks called {spelled_out(name)}, put in {inserts} places",
                     expected="a name for each",
                     file=path,
                 )
