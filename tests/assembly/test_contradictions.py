@@ -13,7 +13,7 @@ from seatlook.chain.case import Case
 from seatlook.chain.start import init
 from seatlook.errors import InputError
 from seatlook.seats import write_demo
-from support.boxes import SIDES, box_scene
+from support.boxes import SIDES, box_scene, rounded_block
 from support.scenes import two_panels
 
 
@@ -193,6 +193,23 @@ def test_a_scene_that_was_guessed_contradicts_nothing(tmp_path):
     files = {name: tmp_path / name for name in ("pattern.dxf", "foam.obj", "seams.toml")}
     init(files["pattern.dxf"], files["foam.obj"], tmp_path / "guess", seams=files["seams.toml"])
     Case(io.load_scene(tmp_path / "guess" / "scene.toml")).check()
+
+
+@pytest.mark.parametrize("radius", [0.03, 0.05])
+def test_a_scene_guessed_on_a_foam_of_long_faces_contradicts_nothing(demo, tmp_path, radius):
+    vertices, faces = rounded_block((0.53, 0.56, 0.12), radius, 0.06)
+    lines = [f"v {x:.6f} {y:.6f} {z:.6f}\n" for x, y, z in vertices]
+    lines += [f"f {a} {b} {c}\n" for a, b, c in faces + 1]
+    (tmp_path / "foam.obj").write_text("".join(lines))
+    init(
+        demo / "pattern.dxf",
+        tmp_path / "foam.obj",
+        tmp_path / "guess",
+        seams=demo / "seams.toml",
+        foam_unit="m",
+    )
+    changes = ["mesh.element_size_mm=30"]
+    Case(io.load_scene(tmp_path / "guess" / "scene.toml", changes=changes)).check()
 
 
 @pytest.mark.parametrize(("factor", "ratio"), [(0.1, r"0\.005\d*"), (10.0, r"5\d\.\d")])

@@ -38,6 +38,19 @@ def test_all_of_a_seat_is_in_the_picture(seat, view, size):
     assert (np.ptp(pixels, axis=0) / size).max() > 0.4
 
 
+@pytest.mark.parametrize("size", [(1280, 720), (480, 640)])
+@pytest.mark.parametrize("view", WHOLE)
+@pytest.mark.parametrize("shape", ["headrest", "backrest"])
+def test_the_cover_of_a_small_seat_is_in_the_picture_too(shape, view, size):
+    """It is larger than the foam that is framed: by 2 mm on each side of a seat 150 mm wide."""
+    foam = SEATS[shape] * (0.15 / np.ptp(SEATS[shape], axis=0).max())
+    camera = framed_view(view, foam, size=size)
+    cover = foam * (1.0 + 0.004 / np.ptp(foam, axis=0))
+    pixels = np.array([camera.pixel(corner) for corner in cover])
+    assert (pixels > 0).all()
+    assert (pixels < size).all()
+
+
 @pytest.mark.parametrize("view", VIEWS)
 def test_pictures_grow_with_the_seat(view):
     small = framed_view(view, SEATS["cushion"])

@@ -169,3 +169,36 @@ def winding(point: FloatArray, triangles: FloatArray) -> float:
         + dot("ij,ij->i", c, a) * lb
     )
     return float(np.arctan2(top, bottom).sum() / (2 * np.pi))
+
+
+def spread(points: FloatArray, faces: IntArray, spacing: float) -> tuple[FloatArray, IntArray]:
+    """Return places (k, 3) all over a surface, about ``spacing`` apart, and the face (k,) of each.
+
+    Each face has the middles of equal parts of itself: one, four, nine, ...
+
+    Examples
+    --------
+    >>> corners = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]])
+    >>> places, face = spread(corners, np.array([[0, 1, 2]]), 1.5)
+    >>> len(places), places.mean(axis=0).round(3).tolist()
+    (4, [0.667, 0.667, 0.0])
+    """
+    corner = points[faces]
+    longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
+    parts = np.ceil(longest / spacing).astype(np.int64)
+    places, owner = [], []
+    for count in np.unique(parts):
+        weights, own = _middles(int(count)), np.flatnonzero(parts == count)
+        places.append(np.einsum("kc,fcd->fkd", weights, corner[own]).reshape(-1, 3))
+        owner.append(np.repeat(own, len(weights)))
+    return np.concatenate(places), np.concatenate(owner)
+
+
+def _middles(count: int) -> FloatArray:
+    """Barycentric middles (count^2, 3) of the equal parts of a triangle cut ``count`` times."""
+    i, j = np.divmod(np.arange(count * count), count)
+    upright = i + j < count
+    # Turned parts fill the other half of the square that the upright ones are counted in.
+    u = np.where(upright, i + 1 / 3, count - i - 1 / 3)
+    v = np.where(upright, j + 1 / 3, count - j - 1 / 3)
+    return np.column_stack([u, v, count - u - v]) / count

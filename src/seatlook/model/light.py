@@ -17,7 +17,8 @@ DISTANCE = 1.1  # m, of the demo seat
 BRIGHTEST = 1e9  # lux, cd, cd/m2; ten thousand suns
 _RADIUS = 0.349  # m, of the sphere around the demo's foam
 _ROUND = 2  # digits of the ratio to it: 1 for the demo's foam below a cover of any thickness
-_MARGIN = 1.01  # free room around a seat for which the sphere's distance is too short
+_MARGIN = 1.01  # room around a seat, from which the sphere's distance is too short
+_ROOM = 1.06  # room that it then gets: a cover is larger than its foam
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -334,7 +335,7 @@ def framed_view(name: str, points: FloatArray, *, size: tuple[int, int] = (1280,
     reach, share = _MARGIN * _whole(camera, points), VIEWS[name][2]
     if share < 1.0 or reach <= distance * share:
         return camera
-    return named_view(name, target=middle, size=size, distance=reach / share)
+    return named_view(name, target=middle, size=size, distance=_ROOM / _MARGIN * reach / share)
 
 
 def sphere_distance(points: FloatArray) -> float:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import KDTree
 
+from seatlook.mesh import face_normals
+from seatlook.mesh.surface import spread
 from seatlook.model import Appearance, FloatArray, Foam, IntArray
 from seatlook.pbr.kernels.surface import Mesh
 
@@ -13,6 +15,7 @@ FOAM = Appearance(albedo=np.array([0.62, 0.57, 0.42]), roughness=0.95, f0=0.02)
 
 # The foam lies this far [m] below the cover, wherever the cover is this near.
 _BELOW, _NEAR = 0.003, 0.03
+_STEP = 0.004  # m between the places of the cover that are looked at
 _ROUNDS = 3  # to be below all panels that meet at an edge or a corner
 # Faces whose normals differ by more than 40 degrees meet in an edge.
 _EDGE_COSINE = np.cos(np.radians(40.0))
@@ -26,23 +29,20 @@ def pressed(foam: Foam, cover: Mesh) -> FloatArray:
     the other beside a sharp edge.
     """
     x = np.array(foam.vertices)
-    owner = np.full(len(cover.vertices), -1)
-    owner[cover.faces] = cover.panel[:, None]
-    panels = np.unique(cover.panel)
-    sides = cover.vertices[cover.faces] - cover.vertices[np.roll(cover.faces, 1, axis=1)]
-    longest = float(np.linalg.norm(sides, axis=2).max())
+    places, face = spread(cover.vertices, cover.faces, _STEP)
+    normals, panel = face_normals(cover.vertices, cover.faces)[face], cover.panel[face]
+    panels = np.unique(panel)
     distance = np.full((len(panels), len(x)), np.inf)
     nearest = np.zeros(distance.shape, dtype=np.int64)
-    for k, panel in enumerate(panels):
-        own = np.flatnonzero(owner == panel)
-        distance[k], place = KDTree(cover.vertices[own]).query(x, distance_upper_bound=_NEAR)
+    for k, name in enumerate(panels):
+        own = np.flatnonzero(panel == name)
+        distance[k], place = KDTree(places[own]).query(x, distance_upper_bound=_NEAR)
         nearest[k] = own[np.minimum(place, len(own) - 1)]
-    # Of a panel the nearest vertex is known, which is up to an edge farther away than its face.
-    meet = np.isfinite(distance) & (distance <= distance.min(axis=0) + longest)
+    meet = np.isfinite(distance) & (distance <= distance.min(axis=0) + _STEP)
     for _ in range(_ROUNDS):
-        for vertex, here in zip(nearest, meet, strict=True):
-            n = cover.normals[vertex]
-            out = ((x - cover.vertices[vertex]) * n).sum(axis=1) + _BELOW
+        for place, here in zip(nearest, meet, strict=True):
+            n = normals[place]
+            out = ((x - places[place]) * n).sum(axis=1) + _BELOW
             x -= np.where(here & (out > 0), out, 0.0)[:, None] * n
     return x
 

@@ -14,6 +14,7 @@ from scipy.spatial import KDTree
 
 from seatlook.mesh import boundary_sides, face_areas, face_normals
 from seatlook.mesh.statistics import quantile
+from seatlook.mesh.surface import spread
 from seatlook.model import Cover, FloatArray, Foam
 from seatlook.solver.foam.foundation import Foundation
 
@@ -159,26 +160,9 @@ def _inner(cover: Cover) -> npt.NDArray[np.bool_]:
 
 def _surface(foam: Foam) -> tuple[FloatArray, FloatArray]:
     """Points (k, 3) [m] all over the foam and the area [m2] each stands for."""
-    corner = foam.vertices[foam.faces]
-    longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
-    area = face_areas(foam.vertices, foam.faces)
-    parts = np.ceil(longest / _SPACING).astype(np.int64)
-    places, areas = [], []
-    for count in np.unique(parts):
-        weights, faces = _lattice(int(count)), parts == count
-        places.append(np.einsum("kc,fcd->fkd", weights, corner[faces]).reshape(-1, 3))
-        areas.append(np.repeat(area[faces] / len(weights), len(weights)))
-    return np.concatenate(places), np.concatenate(areas)
-
-
-def _lattice(count: int) -> FloatArray:
-    """Barycentric middles (count^2, 3) of the equal parts of a triangle cut ``count`` times."""
-    i, j = np.divmod(np.arange(count * count), count)
-    upright = i + j < count
-    # Turned parts fill the other half of the square that the upright ones are counted in.
-    u = np.where(upright, i + 1 / 3, count - i - 1 / 3)
-    v = np.where(upright, j + 1 / 3, count - j - 1 / 3)
-    return np.column_stack([u, v, count - u - v]) / count
+    places, face = spread(foam.vertices, foam.faces, _SPACING)
+    area = face_areas(foam.vertices, foam.faces) / np.bincount(face, minlength=len(foam.faces))
+    return places, area[face]
 
 
 def _percent(share: float) -> str:
