@@ -16,24 +16,10 @@ from seatlook import mesh
 from seatlook.flattening.surface import DesignSurface
 from seatlook.model import FloatArray, IntArray
 from seatlook.seats.cushion import Cushion
+from seatlook.seats.meshing import FoamMesh, inside
+from seatlook.seats.pad import QUARTERS
 
 PANELS = ("INSERT", "BOLSTER_L", "BOLSTER_R", "FRONT", "SIDE_L", "SIDE_R", "REAR")
-_QUARTERS = ("left", "rear", "right", "front")  # counter-clockwise seen from above, from +x
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FoamMesh:
-    """A closed foam surface with its named curves, before it is given a material.
-
-    Parameters
-    ----------
-    vertices : (n, 3) float64 [m]; faces : (m, 3) int64, normals outward
-    curves : name -> (k, 3) float64 [m]
-    """
-
-    vertices: FloatArray
-    faces: IntArray
-    curves: MappingProxyType[str, FloatArray]
 
 
 def demo_design(cushion: Cushion | None = None, *, element_size: float = 0.006) -> DesignSurface:
@@ -78,15 +64,11 @@ def demo_foam_mesh(
     shape = cushion or Cushion()
     plane = _plane(shape, element_size)
     surface = shape.position(plane.points)
-    normals = mesh.vertex_normals(surface, plane.faces)
-    # At the trench's crease the normals of both flanks lean away from the vertex normal.
-    flank = np.einsum("md,mkd->mk", mesh.face_normals(surface, plane.faces), normals[plane.faces])
-    lean = np.bincount(plane.faces.ravel(), flank.ravel()) / np.bincount(plane.faces.ravel())
     x, y = plane.points.T
     slot = np.where(
         np.abs(np.abs(x) - shape.trench_x(y)) < 1e-9, shape.slot * shape.depth_share(y), 0.0
     )
-    vertices = surface - (0.5 * cover_thickness / lean + slot)[:, None] * normals
+    vertices = inside(surface, plane.faces, cover_thickness, slot)
     rim = mesh.boundary_loops(plane.faces)[0]
     vertices[rim, 2] = 0.0
     bottom, bottom_faces = mesh.triangulate(vertices[rim, :2], element_size)
@@ -112,7 +94,7 @@ class _Plane:
 @functools.lru_cache(maxsize=1)
 def _plane(shape: Cushion, h: float) -> _Plane:
     """Mesh the parameter plane with all seam lines and the frame line as edges."""
-    feet, normals = _perimeter(shape)
+    feet, normals = shape.perimeter()
     seam, frame, bottom = (
         shape.ring(feet, normals, level=level) for level in (None, shape.frame_height, 0.0)
     )
@@ -133,35 +115,12 @@ def _plane(shape: Cushion, h: float) -> _Plane:
     lines += list(wires.values())
     rim = np.concatenate([part[:-1] for part in _split(bottom, corners, h)])
     points, faces = mesh.triangulate(rim, h, lines=lines)
-    frame_curves = dict(zip((f"frame_{q}" for q in _QUARTERS), frames, strict=True))
+    frame_curves = dict(zip((f"frame_{q}" for q in QUARTERS), frames, strict=True))
     return _Plane(
         points=points,
         faces=faces,
         curves=wires | {name: line[::-1] for name, line in frame_curves.items()},
     )
-
-
-def _perimeter(shape: Cushion, count: int = 1000) -> tuple[FloatArray, FloatArray]:
-    """Sample the plan outline from the middle of the front left corner, counter-clockwise.
-
-    Every quarter (left, rear, right, front) has ``count`` points and starts in a corner's middle.
-    """
-    core = shape.half - shape.corner_radius
-    feet, normals = [], []
-    for k in range(4):
-        turn = np.array([[0, -1], [1, 0]])
-        across = np.linalg.matrix_power(turn, k) @ np.array([1, 0])
-        along = np.linalg.matrix_power(turn, k) @ np.array([0, 1])
-        half = abs(core @ along)
-        arc = shape.corner_radius * np.pi / 4
-        s = np.linspace(-half - arc, half + arc, count, endpoint=False)
-        bend = np.sign(s) * np.maximum(np.abs(s) - half, 0) / shape.corner_radius
-        theta = k * np.pi / 2 + bend
-        normal = np.column_stack([np.cos(theta), np.sin(theta)])
-        middle = abs(core @ across) * across + np.clip(s, -half, half)[:, None] * along
-        feet.append(middle + shape.corner_radius * normal)
-        normals.append(normal)
-    return np.concatenate(feet), np.concatenate(normals)
 
 
 def _trench(shape: Cushion, seam: FloatArray, side: float) -> FloatArray:
