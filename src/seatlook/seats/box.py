@@ -53,5 +53,7 @@ class BoxCushion(Pad):
         rear, front = QUARTER + QUARTER // 2, 3 * QUARTER + QUARTER // 2
         walls = self.walled({"closing": (rear, "BOXING"), "front": (front, "BOXING")})
         return replace(
-            walls, panels={"TOP": np.zeros((1, 2)), **walls.panels}, closing=("closing",)
+            walls,
+            panels={"TOP": np.zeros((1, 2)), **walls.panels},
+            cuts={"piping": "seam", "closing": "closing"},
         )

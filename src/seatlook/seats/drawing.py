@@ -30,13 +30,14 @@ class Drawing:
                                    plane into regions without holes, the outermost is the foam's rim
     panels : name -> (r, 2) [m]    one place in each region of the panel; regions of none are bare
     wires : name -> lines, one after the other, that are tied down to it
-    closing : lines that part a panel from itself, as the one seam of a ring does
+    cuts : name of a seam -> its line, where a panel is sewn to itself and its border does not
+        show the seam: then a file with all lines goes with the surface
     """
 
     lines: Mapping[str, FloatArray]
     panels: Mapping[str, FloatArray]
     wires: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    closing: tuple[str, ...] = ()
+    cuts: Mapping[str, str] = field(default_factory=dict)
 
 
 class Form(Protocol):

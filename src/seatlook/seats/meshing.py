@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import functools
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -50,6 +52,11 @@ class SeatMesh:
     names: tuple[str, ...]
     lines: MappingProxyType[str, tuple[IntArray, ...]]
 
+    def along(self, names: Sequence[str]) -> IntArray:
+        """Vertices of lines that follow one another, each once."""
+        arcs = [arc for name in names for arc in self.lines[name]]
+        return np.concatenate([arcs[0][:1], *(arc[1:] for arc in arcs)])
+
 
 @functools.lru_cache(maxsize=4)
 def meshed(form: Form, element_size: float) -> SeatMesh:
@@ -92,12 +99,27 @@ def design_surface(form: Form, *, element_size: float = 0.006) -> DesignSurface:
     plane = meshed(form, element_size)
     own = plane.panel >= 0
     used, faces = np.unique(plane.faces[own], return_inverse=True)
+    seam_lines = {
+        (min(a, b), max(a, b)): name
+        for name, line in form.drawing().cuts.items()
+        for a, b in itertools.pairwise(np.searchsorted(used, plane.along([line])).tolist())
+    }
     return DesignSurface(
         vertices=form.position(plane.points[used]),
         faces=np.asarray(faces.reshape(-1, 3), dtype=np.int64),
         panel=plane.panel[own],
         panel_names=plane.names,
+        seam_lines=seam_lines,
     )
+
+
+def cut_lines(form: Form, *, element_size: float = 0.006) -> dict[str, FloatArray]:
+    """Return the seams (k, 3) [m] that the borders of the panels do not show."""
+    plane = meshed(form, element_size)
+    return {
+        name: form.position(plane.points[plane.along([line])])
+        for name, line in form.drawing().cuts.items()
+    }
 
 
 def foam_mesh(
@@ -110,22 +132,17 @@ def foam_mesh(
     plane, drawing = meshed(form, element_size), form.drawing()
     tied = {name for lines in drawing.wires.values() for name in lines}
     room = np.zeros(len(plane.points))
-    for vertices in (np.concatenate(plane.lines[name]) for name in tied):
+    for vertices in (plane.along([name]) for name in tied):
         room[vertices] = form.room(plane.points[vertices])
     surface = form.position(plane.points)
     vertices, faces = closed_below(
         inside(surface, plane.faces, cover_thickness, room), plane.faces, element_size
     )
     curves = {
-        wire: form.position(plane.points[_chained([a for n in lines for a in plane.lines[n]])])
+        wire: form.position(plane.points[plane.along(lines)])
         for wire, lines in drawing.wires.items()
     }
     return FoamMesh(vertices=vertices, faces=faces, curves=MappingProxyType(curves))
-
-
-def _chained(arcs: list[IntArray]) -> IntArray:
-    """Vertices of arcs that follow one another, each once."""
-    return np.concatenate([arcs[0][:1], *(arc[1:] for arc in arcs)])
 
 
 def inside(

@@ -62,11 +62,13 @@ class Saddle(Pad):
         return np.column_stack([x * wide, y, z * (1 + along / self.height)])
 
     def drawing(self) -> Drawing:
-        """Draw the seam between seat and skirt, and the skirt's closing seam at the tank."""
+        """Draw the seam between seat and skirt, and the skirt's closing seam at the rear."""
         rear, front = QUARTER + QUARTER // 2, 3 * QUARTER + QUARTER // 2
-        walls = self.walled({"rear": (rear, "SKIRT"), "closing": (front, "SKIRT")})
+        walls = self.walled({"closing": (rear, "SKIRT"), "front": (front, "SKIRT")})
         return replace(
-            walls, panels={"SEAT": np.zeros((1, 2)), **walls.panels}, closing=("closing",)
+            walls,
+            panels={"SEAT": np.zeros((1, 2)), **walls.panels},
+            cuts={"edge": "seam", "closing": "closing"},
         )
 
 
