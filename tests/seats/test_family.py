@@ -9,7 +9,7 @@ from seatlook import mesh
 from seatlook.errors import InputWarning
 from seatlook.flattening import flatten
 from seatlook.mesh.closest import closest_places, distance_to_segments, pseudonormals
-from seatlook.seats import SHAPES, Cushion, demo_design, design_surface, foam_mesh
+from seatlook.seats import SHAPES, Cushion, demo_design, design_surface, foam_mesh, shaped
 
 ELEMENT = 0.014
 PANEL_COUNTS = {
@@ -30,7 +30,7 @@ def sizes():
 @pytest.fixture(params=sizes(), scope="module")
 def made(request):
     name, scale, bolster = request.param
-    form = SHAPES[name](scale, bolster)
+    form = shaped(name, scale, bolster)
     return name, design_surface(form, element_size=ELEMENT), foam_mesh(form, element_size=ELEMENT)
 
 
@@ -99,7 +99,7 @@ def test_every_size_flattens(made):
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_left_is_right_mirrored(name):
-    form = SHAPES[name](0.9, 0.04)
+    form = shaped(name, 0.9, 0.04)
     line = np.concatenate(list(form.drawing().lines.values()))
     left, right = form.position(line), form.position(line * [-1, 1])
     assert np.allclose(left * [-1, 1, 1], right, atol=1e-12)
@@ -107,7 +107,7 @@ def test_left_is_right_mirrored(name):
 
 def test_the_cushion_of_the_family_is_the_demo():
     assert Cushion.sized(1.0, 0.013) == pytest.approx(Cushion())
-    surface = design_surface(SHAPES["cushion"](1.0, 0.013), element_size=0.012)
+    surface = design_surface(shaped("cushion", 1.0, 0.013), element_size=0.012)
     demo = demo_design(element_size=0.012)
     assert set(surface.panel_names) == set(demo.panel_names)
     for name in demo.panel_names:
@@ -121,7 +121,7 @@ def test_the_cushion_of_the_family_is_the_demo():
 def test_higher_bolsters_stand_higher():
     for name in ("cushion", "horseshoe"):
         heights = [
-            np.ptp(design_surface(SHAPES[name](1.0, b), element_size=0.014).vertices[:, 2])
+            np.ptp(design_surface(shaped(name, 1.0, b), element_size=0.014).vertices[:, 2])
             for b in (0.0, 0.05, 0.1)
         ]
         assert np.diff(heights) == pytest.approx([0.05, 0.05], abs=0.012)
@@ -130,7 +130,7 @@ def test_higher_bolsters_stand_higher():
 def test_twice_the_size_is_twice_the_size():
     for name in ("headrest", "box", "saddle"):
         sizes = [
-            np.ptp(design_surface(SHAPES[name](s, 0.0), element_size=0.014).vertices, axis=0)
+            np.ptp(design_surface(shaped(name, s, 0.0), element_size=0.014).vertices, axis=0)
             for s in (0.7, 1.4)
         ]
         assert sizes[1] == pytest.approx(2 * sizes[0], rel=0.01)

@@ -16,6 +16,9 @@ from seatlook.cli._shares import Shares, shares
 def demo(
     *,
     out: Out = Path("out/demo"),
+    shape: str = "cushion",
+    scale: float = 1.0,
+    bolster_mm: float | None = None,
     ease: Shares = (),
     short: Shares = (),
     tension_percent: float = 1.0,
@@ -29,7 +32,7 @@ def demo(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Write the files of a seat cushion with a pattern that fits it, and evaluate them.
+    """Write the files of a seat with a pattern that fits it, and evaluate them.
 
     Leaves the design surface, foam, wires, pattern, seams and a commented scene.toml to start
     from, and everything that "seatlook evaluate" leaves.
@@ -38,8 +41,17 @@ def demo(
 
     Example: seatlook demo --out out/eased --ease INSERT-BOLSTER_L=4%
 
+    Example: seatlook demo --shape horseshoe --scale 0.8 --bolster-mm 60 --out out/horseshoe
+
     Parameters
     ----------
+    shape
+        cushion, horseshoe, backrest, headrest, box or saddle.
+    scale
+        Size, 0.6 to 1.6: of all lengths but the height of the bolsters.
+    bolster_mm
+        Height of the bolsters over the middle of the seat, 0 to 100; that of the shape, if not
+        given. Headrest, box and saddle have none.
     ease
         SEAM=2%: make one sewing line of this seam longer than its partner, a sewing fault.
     short
@@ -56,13 +68,19 @@ def demo(
         Write the files, and evaluate nothing.
     """
     from seatlook.chain.run_folder import run_folder
+    from seatlook.seats.family import SHAPES
     from seatlook.seats.files import LEFT, write_demo
 
     eased, shortened = shares("--ease", ease), shares("--short", short)
+    if bolster_mm is not None and shape in SHAPES and SHAPES[shape].bolster is None:
+        note(f"the {shape} has no bolsters: --bolster-mm changes nothing")
     with run_folder(out, writes=LEFT, force=force), progress() as show:
         show("flatten")
         scene = write_demo(
             out,
+            shape=shape,
+            scale=scale,
+            bolster=None if bolster_mm is None else bolster_mm / 1e3,
             ease=eased,
             short=shortened,
             tension=tension_percent / 100,

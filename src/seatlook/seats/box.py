@@ -26,8 +26,8 @@ class BoxCushion(Pad):
     crown: float
 
     @classmethod
-    def sized(cls, scale: float, bolster: float = 0.0) -> Self:
-        """Return the cushion ``scale`` times as large; it has no bolster."""
+    def sized(cls, scale: float) -> Self:
+        """Return the cushion ``scale`` times as large."""
         return cls(
             width=0.52 * scale,
             depth=0.50 * scale,

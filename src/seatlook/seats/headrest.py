@@ -37,8 +37,8 @@ class Headrest:
     base: float
 
     @classmethod
-    def sized(cls, scale: float, bolster: float = 0.0) -> Self:
-        """Return the headrest ``scale`` times as large; it has no bolster."""
+    def sized(cls, scale: float) -> Self:
+        """Return the headrest ``scale`` times as large."""
         return cls(
             half=(0.140 * scale, 0.065 * scale, 0.0917 * scale),
             power=3.5,

@@ -29,8 +29,8 @@ class Saddle(Pad):
     crown_x: float
 
     @classmethod
-    def sized(cls, scale: float, bolster: float = 0.0) -> Self:
-        """Return the saddle ``scale`` times as large; it has no bolster."""
+    def sized(cls, scale: float) -> Self:
+        """Return the saddle ``scale`` times as large."""
         return cls(
             width=0.30 * scale,
             depth=0.66 * scale,
