@@ -28,7 +28,7 @@ class DemoChoices(TypedDict, total=False):
     narrower across its grain; ``tension``: share by which all panels are smaller; ``material``,
     and ``insert`` for the middle panel: supplied names; ``element_size_mm``, ``seed``;
     ``surface_size`` [m]: edge length of design surface and foam, which stay the same however the
-    cover is meshed.
+    cover is meshed; 6 mm for the demo, else 8 mm times the scale.
     """
 
     shape: str
@@ -95,14 +95,18 @@ def _write_shape(
     folder: Path, thickness: float, choices: DemoChoices
 ) -> tuple[tuple[str, ...], str]:
     """Write design surface, foam, wires and lines; return the middle panels and what it is."""
-    name, size = choices.get("shape", "cushion"), choices.get("surface_size", 0.006)
-    scale, bolster = choices.get("scale", 1.0), choices.get("bolster")
-    form = shaped(name, scale, bolster)
+    name, scale = choices.get("shape", "cushion"), choices.get("scale", 1.0)
+    form = shaped(name, scale, choices.get("bolster"))
     usual = form == Cushion()
-    surface = (demo_design if usual else design_surface)(form, element_size=size)
-    foam = (demo_foam_mesh if usual else foam_mesh)(
-        form, element_size=size, cover_thickness=thickness
-    )
+    size = choices.get("surface_size", 0.006 if usual else 0.008 * scale)
+    if usual:
+        surface = demo_design(element_size=size)
+        foam = demo_foam_mesh(element_size=size, cover_thickness=thickness)
+        seat = "The demo seat: a car-seat cushion about 0.5 m wide, with two bolsters."
+    else:
+        surface = design_surface(form, element_size=size)
+        foam = foam_mesh(form, element_size=size, cover_thickness=thickness)
+        seat = f"A demo seat: {name}, {scale:g} times its usual size."
     write_panels(surface, folder / DESIGN)
     io.write_obj(foam.vertices, foam.faces, folder / FOAM)
     tied = {wire: foam.curves[wire] for wire in form.drawing().wires}
@@ -112,8 +116,4 @@ def _write_shape(
         else:  # one of another shape, written here before
             (folder / file).unlink(missing_ok=True)
     inserts = tuple(panel for panel in surface.panel_names if panel.startswith("INSERT"))
-    if usual:
-        seat = "The demo seat: a car-seat cushion about 0.5 m wide, with two bolsters."
-    else:
-        seat = f"A demo seat: {name}, {scale:g} times its usual size."
     return inserts or surface.panel_names[:1], seat
