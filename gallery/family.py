@@ -141,9 +141,7 @@ def main() -> None:
         head |= {"scale": f"{scale:.3f}", "bolster_mm": f"{1e3 * bolster:.1f}"}
         with tempfile.TemporaryDirectory() as folder:
             try:
-                row, picture = measure(
-                    Path(folder), shape, scale, bolster, chosen.element_size_mm
-                )
+                row, picture = measure(Path(folder), shape, scale, bolster, chosen.element_size_mm)
                 picture.save(chosen.pictures / f"{shape}-{number}.png")
             except SeatlookError as error:
                 row = {"status": "refused", "reason": str(error)}

@@ -69,7 +69,9 @@ def test_wires_lie_on_seams(made):
     _, surface, foam = made
     for wire in foam.curves.values():
         edge = seam_edges(surface)
-        away = distance_to_segments(wire, surface.vertices[edge[:, 0]], surface.vertices[edge[:, 1]])
+        away = distance_to_segments(
+            wire, surface.vertices[edge[:, 0]], surface.vertices[edge[:, 1]]
+        )
         assert away.max() < 0.0015  # chords of the wire and of the mesh
 
 

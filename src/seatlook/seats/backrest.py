@@ -134,5 +134,9 @@ class Backrest(Pad):
             walls,
             lines={**walls.lines, **lines},
             panels={**{k: np.array(v) for k, v in panels.items()}, **walls.panels},
-            wires={"wing_left": ("wing left",), "wing_right": ("wing right",), "lumbar": ("lumbar",)},
+            wires={
+                "wing_left": ("wing left",),
+                "wing_right": ("wing right",),
+                "lumbar": ("lumbar",),
+            },
         )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
@@ -41,7 +40,12 @@ class Drawing:
 
 
 class Form(Protocol):
-    """A seat by formula: a smooth map of the plane, and what is drawn in it."""
+    """A seat by formula: a smooth map of the plane, and what is drawn in it.
+
+    Its mesh is kept for as long as forms are equal.
+    """
+
+    def __hash__(self) -> int: ...
 
     def position(self, p: FloatArray) -> FloatArray:
         """Map plane points (k, 2) onto the surface, (k, 3) [m]."""
@@ -92,17 +96,17 @@ def parted(drawing: Drawing) -> tuple[tuple[Arc, ...], tuple[Region, ...]]:
     owner: dict[int, str] = {}
     for name, places in drawing.panels.items():
         for place in shapely.points(places):
-            number = next((i for i, area in enumerate(areas) if area.contains(place)), None)
-            if number is None:
+            within = [i for i, area in enumerate(areas) if area.contains(place)]
+            if not within:
                 raise SeatlookError(f"panel {name}: no region at {place}")
-            owner[number] = name
+            owner[within[0]] = name
     regions = []
-    for number, area in enumerate(areas):
+    for index, area in enumerate(areas):
         if len(area.interiors):
             raise SeatlookError(f"a region with a hole round {area.representative_point()}")
         ring = shapely.get_coordinates(shapely.geometry.polygon.orient(area).exterior)
         along = [steps[a, b] for a, b in itertools.pairwise(map(tuple, ring.tolist()))]
-        regions.append(Region(sides=_runs(along), panel=owner.get(number)))
+        regions.append(Region(sides=_runs(along), panel=owner.get(index)))
     return arcs, tuple(regions)
 
 
@@ -166,8 +170,3 @@ def _arcs(lines: Mapping[str, FloatArray]) -> list[Arc]:
 
 def _closed(line: FloatArray) -> bool:
     return bool((line[0] == line[-1]).all())
-
-
-def merged(*drawn: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
-    """Lines of several mappings in one."""
-    return MappingProxyType({name: line for lines in drawn for name, line in lines.items()})

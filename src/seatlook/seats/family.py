@@ -77,9 +77,7 @@ def shaped(name: str, scale: float = 1.0, bolster: float | None = None) -> Form:
     if bolster is not None and not BOLSTERS[0] <= bolster <= BOLSTERS[1]:
         low, high = (1e3 * height for height in BOLSTERS)
         problems.append(
-            Problem(
-                key="bolster", got=f"{1e3 * bolster:g} mm", expected=f"{low:g} to {high:g} mm"
-            )
+            Problem(key="bolster", got=f"{1e3 * bolster:g} mm", expected=f"{low:g} to {high:g} mm")
         )
     if problems:
         raise InputError(problems)

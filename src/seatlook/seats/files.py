@@ -24,11 +24,11 @@ class DemoChoices(TypedDict, total=False):
     """How the demo seat is made.
 
     ``shape`` of the family, its ``scale`` and the height of its ``bolster`` [m], None for the
-    shape's own; ``ease``: seam -> share by which one line is longer; ``short``: panel -> share by which it is
-    narrower across its grain; ``tension``: share by which all panels are smaller; ``material``,
-    and ``insert`` for the middle panel: supplied names; ``element_size_mm``, ``seed``;
-    ``surface_size`` [m]: edge length of design surface and foam, which stay the same however the
-    cover is meshed; 6 mm for the demo, else 8 mm times the scale.
+    shape's own; ``ease``: seam -> share by which one line is longer; ``short``: panel -> share by
+    which it is narrower across its grain; ``tension``: share by which all panels are smaller;
+    ``material``, and ``insert`` for the middle panels: supplied names; ``element_size_mm``,
+    ``seed``; ``surface_size`` [m]: edge length of design surface and foam, which stay the same
+    however the cover is meshed; 6 mm for the demo, else 8 mm times the scale.
     """
 
     shape: str

@@ -101,7 +101,7 @@ class Headrest:
         y = side * self.seam * (1 - self.taper * np.minimum(z, 0) ** 2)
         way = np.column_stack([x, y, z])
         size = (np.abs(way) ** self.power).sum(axis=1) ** (-1 / self.power)
-        return self._plane(way)[size * z >= -self.frame]
+        return np.asarray(self._plane(way)[size * z >= -self.frame])
 
     def room(self, p: FloatArray) -> FloatArray:
         """No tie-down, no room for one."""

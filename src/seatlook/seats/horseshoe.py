@@ -114,8 +114,8 @@ class Horseshoe(Pad):
         across = np.array([[w, 0.0], [-w, 0.0]])
         lines = {
             "horseshoe": self.on_top(np.concatenate([left, left[::-1] * [-1, 1]])),
-            "tied": across + [0.0, self.tied],
-            "flush": across + [0.0, self.flush],
+            "tied": across + np.array([0.0, self.tied]),
+            "flush": across + np.array([0.0, self.flush]),
             "joint left": joint,
             "joint right": joint * [-1, 1],
         }

@@ -132,8 +132,8 @@ def foam_mesh(
     plane, drawing = meshed(form, element_size), form.drawing()
     tied = {name for lines in drawing.wires.values() for name in lines}
     room = np.zeros(len(plane.points))
-    for vertices in (plane.along([name]) for name in tied):
-        room[vertices] = form.room(plane.points[vertices])
+    for line in (plane.along([name]) for name in tied):
+        room[line] = form.room(plane.points[line])
     surface = form.position(plane.points)
     vertices, faces = closed_below(
         inside(surface, plane.faces, cover_thickness, room), plane.faces, element_size

@@ -110,7 +110,8 @@ class Pad(ABC):
     def perimeter(self, count: int = QUARTER) -> tuple[FloatArray, FloatArray]:
         """Sample the plan outline from the middle of the front left corner, counter-clockwise.
 
-        Every quarter (left, rear, right, front) has ``count`` points and starts in a corner's middle.
+        Every quarter (left, rear, right, front) has ``count`` points and starts in the middle of a
+        corner.
         """
         core = self.half - self.corner_radius
         feet, normals = [], []
@@ -157,7 +158,7 @@ class Pad(ABC):
     def on_top(self, line: FloatArray) -> FloatArray:
         """Return the part (k, 2) of a line within the seam between top and walls."""
         area = shapely.Polygon(self.ring(*self.perimeter(), level=None))
-        return shapely.get_coordinates(shapely.LineString(line).intersection(area))
+        return np.asarray(shapely.get_coordinates(shapely.LineString(line).intersection(area)))
 
 
 def swell(share: FloatArray) -> FloatArray:
@@ -177,6 +178,4 @@ def fading(way: FloatArray, reach: float, tail: float) -> FloatArray:
 
 def quarters(*panels: str) -> dict[str, tuple[int, str]]:
     """Walls that meet in the four corners, for ``Pad.walled``: left, rear, right, front."""
-    return {
-        f"corner {k}": (k * QUARTER, panel) for k, panel in enumerate(panels)
-    }
+    return {f"corner {k}": (k * QUARTER, panel) for k, panel in enumerate(panels)}
