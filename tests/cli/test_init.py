@@ -278,11 +278,12 @@ def test_how_the_foam_is_mended_goes_into_the_scene(own, tmp_path, capsys):
 def test_an_allowance_goes_into_the_scene(tmp_path, own):
     pattern = own / "cut.dxf"
     sheet = Sheet(pattern)
-    sheet.block("A", [(0, 0), (400, 0), (400, 300), (0, 300)])
+    block = sheet.block("A")
+    sheet.line(block, [(0, 0), (400, 0), (400, 300), (0, 300)], layer="Schnitt 1")
     sheet.insert("A")
     sheet.document.saveas(pattern)
     files = [str(pattern), str(own / "foam.obj"), "--out", str(tmp_path / "a")]
-    assert run(["init", *files, "--allowance-mm", "12"]) == 0
+    assert run(["init", *files, "--allowance-mm", "12", "--layer", "Schnitt 1=CUT"]) == 0
     (panel,) = io.load_scene(tmp_path / "a/scene.toml").pattern.panels
     assert 1e3 * np.ptp(panel.outline, axis=0) == pytest.approx([376, 276])
     assert 1e3 * np.ptp(panel.cut_outline, axis=0) == pytest.approx([400, 300])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from seatlook.cli._mend import MendingOptions
+from seatlook.cli._options import Names
 from seatlook.cli._output import Json, note, progress, table
 from seatlook.errors import InputError
 from seatlook.io.pattern.units import Units
@@ -40,6 +41,7 @@ def init(
     encoding: str | None = None,
     grain_deg: float | None = None,
     allowance_mm: float | None = None,
+    layer: Names = (),
     top: str | None = None,
     turn_deg: float = 0.0,
     force: Annotated[bool, Parameter(negative=())] = False,
@@ -82,6 +84,8 @@ def init(
         Warp of panels without a grain line, from the pattern's x axis; 90 if not given.
     allowance_mm
         Width of the allowance where only the cut line is drawn: the sew line lies so far inside.
+    layer
+        LAYER=MEANING for a layer of the DXF: SCHNITT=CUT. Also SEW, NOTCH, GRAIN and others.
     top
         Panel that lies on top; the largest if not given.
     turn_deg
@@ -112,7 +116,7 @@ def init(
             unit=unit, up=up, mending=(mending or MendingOptions()).choices(),
             material=material, foam_material=foam_material, seams=seams,
             wires=wires, size=size, units=units, encoding=encoding, grain_deg=grain_deg,
-            allowance_mm=allowance_mm, top=top,
+            allowance_mm=allowance_mm, layers=_layers(layer), top=top,
             turn_deg=turn_deg, force=force,
         )  # fmt: skip
     note(*first.notes)
@@ -137,3 +141,12 @@ def _show_ties(made: FlattenedScene, *, json: bool) -> None:
     rows += [(f.name, " + ".join(f.edges), f.curve) for f in made.draft.frames]
     table(("tie", "lines", "to"), rows, json=json)
     note(*made.notes)
+
+
+def _layers(words: tuple[str, ...]) -> dict[str, str]:
+    """Read LAYER=MEANING."""
+    pairs = [word.rpartition("=") for word in words]
+    for word, (name, _, meaning) in zip(words, pairs, strict=True):
+        if not name or not meaning:
+            raise InputError.single("--layer", got=word, expected="LAYER=MEANING, as SCHNITT=CUT")
+    return {name: meaning for name, _, meaning in pairs}

@@ -93,8 +93,10 @@ def mend(
         json=json,
     )
     kind = "design surface" if sheet else "foam"
+    apart = any(row.what.endswith("parts that do not touch") for row in mended.mended)
     note(
         *(() if mended.mended else ("nothing to mend",)),
         f"read in {axes.unit} with {axes.up} up: {axes.size(mended.vertices)}",
         f"{kind} of {len(mended.faces)} triangles: {out}",
+        *(["say unite = true in [foam] as well: its parts do not touch"] if apart else ()),
     )

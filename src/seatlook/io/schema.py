@@ -213,9 +213,9 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """Tables under free names, as ``[edge.NAME]``."""
+    """Tables or values under free names, as ``[edge.NAME]``."""
 
-    table: Table
+    table: Kind
     required: bool = False
 
     def read(self, document: Document, key: Key, value: Any) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from seatlook.errors import InputError, InputWarning
 from seatlook.io import read_dxf
-from support.dxf_sheet import L_AREA, area, one_piece
+from support.dxf_sheet import L_AREA, L_SHAPE, Sheet, area, one_piece
 
 
 @pytest.mark.parametrize(
@@ -123,3 +123,40 @@ def test_a_file_without_a_unit_is_in_mm_where_only_that_makes_a_piece(write):
     small = whole.replace("\n300\n", "\n200\n")
     with pytest.raises(InputError, match="UNITS: got no such text"):
         read_dxf(write("b.dxf", small))
+
+
+OWN_LAYERS = {"Schnitt": "CUT", "naht": "sew", "Laufrichtung": "7"}
+
+
+@pytest.fixture
+def german(tmp_path):
+    sheet = Sheet(tmp_path / "a.dxf")
+    block = sheet.block("P", None, grain=False)
+    sheet.line(block, L_SHAPE, layer="SCHNITT")
+    sheet.line(block, [(10, 10), (290, 10), (290, 90), (110, 90), (110, 190), (10, 190)], "Naht")
+    block.add_line((50, 20), (80, 20), dxfattribs={"layer": "Laufrichtung"})
+    sheet.insert("P")
+    return sheet
+
+
+def test_layers_mean_what_is_said(german):
+    with pytest.raises(InputError, match="pieces: got none"):
+        german.read()
+    panels, said = german.read(layers=OWN_LAYERS)
+    assert area(panels["P"].cut_outline) == pytest.approx(L_AREA)
+    assert 1e3 * panels["P"].outline.min() == pytest.approx(10)
+    assert np.abs(panels["P"].grain) == pytest.approx([1.0, 0.0])
+    assert said == []
+
+
+@pytest.mark.parametrize(
+    ("layers", "message"),
+    [
+        ({"Schnitt": "CUTS"}, "layers.Schnitt: got 'CUTS', expected CUT"),
+        ({"Zuschnitt": "CUT"}, "layers: got 'Zuschnitt', expected one of "),
+    ],
+)
+def test_layers_that_do_not_exist_are_named(german, layers, message):
+    with pytest.raises(InputError) as refused:
+        german.read(layers=layers)
+    assert message in str(refused.value)

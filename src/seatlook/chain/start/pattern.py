@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -26,7 +27,7 @@ from seatlook.chain.start.scene_file import (
     write_scene,
 )
 from seatlook.errors import InputError
-from seatlook.io.pattern.seams import Reading
+from seatlook.io.pattern.dxf import Reading
 from seatlook.io.pattern.units import Units
 from seatlook.io.surface.axes import Unit, Up
 from seatlook.mesh.mending.mend import AS_IT_IS, Mending
@@ -44,6 +45,7 @@ class StartChoices(TypedDict, total=False):
     ``foam_material``: supplied names or files; ``seams``: file taken instead of a guess; ``wires``:
     curves file of the wires in the foam; ``size``, ``units`` and ``encoding`` of the pattern, and
     ``grain_deg`` of its pieces without a grain line, ``allowance_mm`` of those without a sew line;
+    ``layers``: layer of the file -> what it means, as CUT or SEW;
     ``top``: the panel on top, turned by
     ``turn_deg``; ``force``: write over a scene that is there.
     """
@@ -60,6 +62,7 @@ class StartChoices(TypedDict, total=False):
     encoding: str | None
     grain_deg: float | None
     allowance_mm: float | None
+    layers: Mapping[str, str] | None
     top: str | None
     turn_deg: float
     force: bool
@@ -152,6 +155,7 @@ def _draft(
             "encoding": choices.get("encoding"),
             "grain_deg": choices.get("grain_deg"),
             "allowance_mm": choices.get("allowance_mm"),
+            "layers": choices.get("layers"),
         },
         guessed=choices.get("seams") is None,
         material=material,
@@ -184,6 +188,7 @@ def _pattern_notes(cut: Path, choices: StartChoices) -> tuple[str, ...]:
         size=choices.get("size"),
         units=choices.get("units"),
         encoding=choices.get("encoding"),
+        layers=choices.get("layers") or {},
     )
     return tuple(f"{cut.name}: {line}" for line in report.lines())
 
@@ -197,6 +202,7 @@ def _sewn(pattern: Path, seams: Path | None, choices: StartChoices) -> Proposal:
         encoding=choices.get("encoding"),
         grain_deg=choices.get("grain_deg"),
         allowance=None if width is None else width / 1e3,
+        layers=choices.get("layers") or {},
     )
     if seams is None:
         return propose_seams(io.read_panels(pattern, **reading))

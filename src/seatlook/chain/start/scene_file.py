@@ -106,7 +106,9 @@ class SceneDraft:
     name: str
     pattern: Path
     seams: Path
-    reading: Mapping[str, str | float | None] = field(default_factory=lambda: MappingProxyType({}))
+    reading: Mapping[str, str | float | Mapping[str, str] | None] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
     guessed: bool = False
     material: str
     panels: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import warnings
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 from ezdxf.lldxf.const import DXFError
@@ -19,7 +20,7 @@ from shapely.errors import ShapelyError
 from seatlook.errors import InputError, InputWarning, Problem
 from seatlook.files import reader
 from seatlook.io.pattern.allowance import only_cut, with_allowance
-from seatlook.io.pattern.drawing.drawing import Drawing, open_drawing, refusal
+from seatlook.io.pattern.drawing.drawing import Drawing, assign_layers, open_drawing, refusal
 from seatlook.io.pattern.drawing.entities import Drawn, has_line, read_entities, read_texts
 from seatlook.io.pattern.drawing.layers import BOUNDARY
 from seatlook.io.pattern.drawing.uses import find_uses, layers_of, unique, unique_names
@@ -34,23 +35,28 @@ SMALLEST_NOTCH = 0.005  # m
 _SMALLEST_PATTERN_MM = 80.0
 
 
+class Reading(TypedDict, total=False):
+    """How a pattern file is read; see ``read_dxf``."""
+
+    size: str | None
+    units: Units | None
+    smallest_notch: float
+    encoding: str | None
+    grain_deg: float | None
+    allowance: float | None
+    layers: Mapping[str, str]
+
+
 @reader("a pattern (DXF)")
-def read_dxf(
-    path: Path,
-    *,
-    size: str | None = None,
-    units: Units | None = None,
-    smallest_notch: float = SMALLEST_NOTCH,
-    encoding: str | None = None,
-    grain_deg: float | None = None,
-    allowance: float | None = None,
-) -> tuple[Panel, ...]:
+def read_dxf(path: Path, **reading: Unpack[Reading]) -> tuple[Panel, ...]:
     """Read the pieces of a pattern.
 
     What is unusual, mended, guessed or left out comes as an ``InputWarning``.
 
     Parameters
     ----------
+    reading : all may be left out
+
     size : the size to read; without it the sample size, or the only one there is
     units : for a file without a UNITS text
     smallest_notch : float [m]
@@ -62,6 +68,7 @@ def read_dxf(
     allowance : float [m]
         Width of the allowance of pieces of which only the cut line is drawn: their sew line lies
         that much inside.
+    layers : name of a layer in the file -> what it means, as ``CUT``, ``SEW`` or ``14``
 
     Returns
     -------
@@ -79,11 +86,7 @@ def read_dxf(
         an outline is open, crosses itself or holds nan, or is smaller than 5 mm or larger than
         10 m. All pieces are reported at once.
     """
-    panels, report = read_drawing(
-        path, size=size, units=units, smallest_notch=smallest_notch, encoding=encoding,
-        grain_deg=grain_deg,
-    )  # fmt: skip
-    panels = _sewn_inside(path, panels, allowance, report)
+    panels, report = read_drawing(path, **reading)
     for text in report.warnings():
         warnings.warn(f"{path}: {text}", InputWarning, 2)
     return panels
@@ -106,37 +109,32 @@ def _sewn_inside(
 
 
 @reader("a pattern (DXF)")
-def report_dxf(path: Path, **options: Any) -> PatternReport:
-    """Return what is read of a pattern file and what is not; ``options`` as in ``read_dxf``."""
-    return read_drawing(path, **options)[1]
+def report_dxf(path: Path, **reading: Unpack[Reading]) -> PatternReport:
+    """Return what is read of a pattern file and what is not; ``reading`` as in ``read_dxf``."""
+    return read_drawing(path, **reading)[1]
 
 
 @reader("a pattern (DXF)")
-def read_drawing(
-    path: Path,
-    *,
-    size: str | None = None,
-    units: Units | None = None,
-    smallest_notch: float = SMALLEST_NOTCH,
-    encoding: str | None = None,
-    grain_deg: float | None = None,
-) -> tuple[tuple[Panel, ...], PatternReport]:
+def read_drawing(path: Path, **reading: Unpack[Reading]) -> tuple[tuple[Panel, ...], PatternReport]:
     """Read the pieces of a pattern, and what is to say of them; see ``read_dxf``."""
-    drawing = open_drawing(path, encoding)
+    drawing = open_drawing(path, reading.get("encoding"))
+    assign_layers(path, drawing.document, reading.get("layers", {}))
+    notch = 1e3 * reading.get("smallest_notch", SMALLEST_NOTCH)
     report = PatternReport(notes=list(drawing.notes))
     try:
         titles = _titles(drawing.document)
         report.mm_per_unit = millimetres_per_unit(
             path,
             titles.get("units"),
-            units,
+            reading.get("units"),
             drawing.header,
             report.notes,
             lambda: _longest(drawing.document),
         )
-        pieces = _pieces(drawing, titles, size, report)
-        panels = _panels(path, pieces, report, 1e3 * smallest_notch, grain_deg)
+        pieces = _pieces(drawing, titles, reading.get("size"), report)
+        panels = _panels(path, pieces, report, notch, reading.get("grain_deg"))
         _check_scale(panels, drawing, report)
+        panels = _sewn_inside(path, panels, reading.get("allowance"), report)
         return add_mirrored(panels, report), report
     except InputError:
         raise

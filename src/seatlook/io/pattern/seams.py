@@ -9,15 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, TypedDict, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.files import reader, write_text
 from seatlook.io.pattern.allowance import only_cut, with_edge_allowances
-from seatlook.io.pattern.dxf import read_dxf
-from seatlook.io.pattern.units import Units
+from seatlook.io.pattern.dxf import Reading, read_dxf
 from seatlook.io.schema import (
     FAR_MM,
     MM,
@@ -72,17 +71,6 @@ _KEYS: dict[str, Kind] = {
         )
     ),
 }
-
-
-class Reading(TypedDict, total=False):
-    """How a pattern file is read; see ``read_dxf``."""
-
-    size: str | None
-    units: Units | None
-    smallest_notch: float
-    encoding: str | None
-    grain_deg: float | None
-    allowance: float | None
 
 
 @reader("a pattern")

@@ -45,6 +45,7 @@ KEYS: dict[str, Kind] = {
             "encoding": Text(),
             "grain_deg": Number(low=-360, high=360),
             "allowance_mm": Number(above=0, high=100, scale=MM),
+            "layers": Named(Text()),
             "material": Text(),
         },
         required=True,

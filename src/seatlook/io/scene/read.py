@@ -153,6 +153,7 @@ class _Reader:
                 encoding=row["encoding"],
                 grain_deg=row["grain_deg"],
                 allowance=row["allowance_mm"],
+                layers={name: what for name, what in row["layers"].items() if what},
                 smallest_notch=SMALLEST_NOTCH if notch is None else notch,
             )
         except InputError as error:

@@ -11,9 +11,10 @@ from typing import Any
 import ezdxf.filemanagement
 from ezdxf.lldxf.validator import is_valid_block_name
 
-from seatlook.errors import InputError
+from seatlook.errors import InputError, Problem
 from seatlook.files import read_file
 from seatlook.io.pattern.drawing.encoding import decode, spelled_out
+from seatlook.io.pattern.drawing.layers import LINE_LAYERS, MEANINGS, TURN, UNREAD, meaning
 from seatlook.io.pattern.drawing.log import listening, loses_a_piece
 
 _BINARY = b"AutoCAD Binary DXF"
@@ -76,6 +77,35 @@ def open_drawing(path: Path, encoding: str | None = None) -> Drawing:
     if lost:
         raise InputError.single("file", got=lost[0], expected="a whole DXF file", file=path)
     return Drawing(path, document, names, header, (*notes, *dict.fromkeys(messages)))
+
+
+def assign_layers(path: Path, document: Any, layers: Mapping[str, str]) -> None:
+    """Put what is drawn on some layers on those of AAMA that they stand for.
+
+    Raises
+    ------
+    InputError
+        A layer on which nothing is drawn, or a meaning that there is none of.
+    """
+    if not layers:
+        return
+    wanted = {name.casefold(): meaning(what) for name, what in layers.items()}
+    entities = [e for layout in (*document.blocks, document.modelspace()) for e in layout]
+    drawn = sorted({e.dxf.layer for e in entities})
+    problems = [
+        Problem(key=f"layers.{name}", got=repr(what), expected=", ".join(MEANINGS), file=path)
+        for name, what in layers.items()
+        if meaning(what) not in (*LINE_LAYERS, TURN, *UNREAD)
+    ]
+    problems += [
+        Problem(key="layers", got=repr(name), expected=f"one of {', '.join(drawn)}", file=path)
+        for name in layers
+        if name.casefold() not in {layer.casefold() for layer in drawn}
+    ]
+    if problems:
+        raise InputError(problems)
+    for entity in entities:
+        entity.dxf.layer = wanted.get(entity.dxf.layer.casefold(), entity.dxf.layer)
 
 
 def refusal(path: Path, error: Exception) -> InputError:

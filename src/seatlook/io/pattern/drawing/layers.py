@@ -34,6 +34,7 @@ _NAMES = {
     "13": ("drill", "drillhole", "drillholes"),
     "15": ("annotation", "annotations", "text", "texts"),
 }
+MEANINGS = ("CUT", "SEW", "NOTCH", "GRAIN", "INTERNAL", "MIRROR", "CUTOUT", "TURN")
 _BY_NAME = {name: layer for layer, names in _NAMES.items() for name in names}
 
 
