@@ -55,6 +55,41 @@ def test_a_surface_without_groups_becomes_a_pattern_along_its_lines(form):
     assert panels.panel_names == ("PANEL_1", "PANEL_2")
 
 
+def name_panels(form, **points):
+    tables = "".join(f"[panel.{name}]\npoint_mm = {place}\n" for name, place in points.items())
+    text = LINES.format(z=0) + tables
+    (form / "lines.toml").write_text(text)
+    lines = str(form / "lines.toml")
+    return run(
+        ["flatten", str(form / "form.obj"), "--out", str(form / "named"), "--seam-lines", lines]
+    )
+
+
+def test_panels_may_be_named_by_a_point_in_each(form):
+    assert name_panels(form, INSERT=[200, 40, 0], BOLSTER_L=[200, 250, 4]) == 0
+    pattern = io.read_pattern(form / "named/pattern.dxf", form / "named/seams.toml")
+    assert {panel.name for panel in pattern.panels} == {"INSERT", "BOLSTER_L"}
+    assert {"INSERT.BOLSTER_L", "BOLSTER_L.INSERT", "INSERT.free"} <= set(pattern.edges)
+
+
+@pytest.mark.parametrize(
+    ("points", "message"),
+    [
+        ({"A": [200, 40, 30]}, "panel.A.point_mm: got one farther away, expected a point at most"),
+        (
+            {"A": [200, 40, 0], "B": [210, 40, 0]},
+            "panel.B.point_mm: got a point in the same panel as A",
+        ),
+        ({"PANEL_2": [200, 40, 0]}, "panel.PANEL_2: got a name that two panels have"),
+    ],
+)
+def test_names_of_panels_that_cannot_be_are_refused(form, capsys, points, message):
+    assert name_panels(form, **points) == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert message in said
+    assert "lines.toml" in said
+
+
 def test_a_line_off_the_surface_is_refused_with_file_and_key(form):
     done = flatten(form, z=5)
     assert done.returncode == 2

@@ -10,7 +10,7 @@ from typing import TypedDict, Unpack
 
 from seatlook import io
 from seatlook.errors import InputError
-from seatlook.flattening.cutting import cut_along, opened
+from seatlook.flattening.cutting import cut_along, named, opened
 from seatlook.flattening.flatten import Flattened, flatten
 from seatlook.flattening.lie import Lie, lie_of, write_lie
 from seatlook.flattening.strain_map import write_strain_maps
@@ -92,9 +92,9 @@ def read_design(
     form = DesignSurface(**io.read_surface(path, unit=unit, up=up, ungrouped="PANEL")._asdict())
     if seam_lines is None:
         return opened(form)
-    lines = io.read_curves(seam_lines)
+    lines, names = io.read_seam_lines(seam_lines)
     try:
-        return cut_along(form, lines)
+        return named(cut_along(form, lines), names)
     except InputError as error:
         raise InputError(
             problem if problem.file else replace(problem, file=seam_lines)

@@ -7,22 +7,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from seatlook.files import write_text
+from seatlook.files import reader, write_text
 from seatlook.flattening.border import Border, borders
 from seatlook.flattening.flatten import Flattened
 from seatlook.flattening.pattern import pair
 from seatlook.flattening.surface import DesignSurface, sides
-from seatlook.io.schema import MM, Array, Kind, Named, Table, Texts, read_table
+from seatlook.io.schema import MM, Array, Kind, Named, Table, Texts, place_mm, read_table
 from seatlook.io.toml import quoted, read_document, toml_key
 from seatlook.model import FloatArray, Pose
 
-_POINTS = Array(shape=(None, 3), scale=MM, required=True)
+_POINTS = place_mm(3, many=True)
 _KEYS: dict[str, Kind] = {
     "placement": Named(
         Table(
             {
                 "rotation": Array(shape=(3, 3), required=True),
-                "translation_mm": Array(shape=(3,), scale=MM, required=True),
+                "translation_mm": place_mm(3),
             }
         ),
         required=True,
@@ -86,6 +86,7 @@ def write_lie(lie: Lie, path: Path) -> None:
     write_text(path, "\n\n".join(blocks) + "\n")
 
 
+@reader("what flatten left")
 def read_lie(path: Path) -> Lie:
     """Read what :func:`write_lie` wrote.
 

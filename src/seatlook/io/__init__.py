@@ -11,6 +11,9 @@ if TYPE_CHECKING:
         read_curves as read_curves,
     )
     from seatlook.io.curves import (
+        read_seam_lines as read_seam_lines,
+    )
+    from seatlook.io.curves import (
         write_curves as write_curves,
     )
     from seatlook.io.export.film import (
@@ -121,6 +124,7 @@ _PUBLIC: dict[str, str] = {
     "materials_dir": "seatlook.io.material",
     "mend_file": "seatlook.io.surface.mended",
     "read_curves": "seatlook.io.curves",
+    "read_seam_lines": "seatlook.io.curves",
     "read_d3plot": "seatlook.io.lsdyna.d3plot.reader",
     "read_dxf": "seatlook.io.pattern.dxf",
     "read_foam": "seatlook.io.surface.foam",
@@ -168,6 +172,7 @@ __all__ = [
     "read_panels",
     "read_pattern",
     "read_result",
+    "read_seam_lines",
     "read_shapes",
     "read_shells",
     "read_surface",

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from seatlook.files import reader, write_text
 from seatlook.io.schema import Kind, Named, Table, place_mm, read_table
-from seatlook.io.toml import quoted, read_document
+from seatlook.io.toml import Document, quoted, read_document
 from seatlook.model import FloatArray
 
 _KEYS: dict[str, Kind] = {
     "curve": Named(Table({"points_mm": place_mm(3, many=True)}), required=True)
 }
+
+_PANELS: dict[str, Kind] = {"panel": Named(Table({"point_mm": place_mm(3)}))}
 
 
 @reader("a file of curves")
@@ -31,13 +34,39 @@ def read_curves(path: Path) -> dict[str, FloatArray]:
         For a key that is unknown, missing or of the wrong type, and for a curve without length.
     """
     document = read_document(path)
-    row = read_table(document, _KEYS)
+    curves = _curves(document, read_table(document, _KEYS))
+    document.finish()
+    return curves
+
+
+@reader("a file of curves")
+def read_seam_lines(path: Path) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
+    """Read a curves file that may also name panels: ``[panel.NAME] point_mm = [x, y, z]``.
+
+    Returns
+    -------
+    lines : name -> (k, 3) [m]
+    panels : name -> point (3,) [m] inside the panel
+
+    Raises
+    ------
+    InputError
+        As :func:`read_curves`.
+    """
+    document = read_document(path)
+    row = read_table(document, _KEYS | _PANELS)
+    lines = _curves(document, row)
+    document.finish()
+    return lines, {name: panel["point_mm"] for name, panel in row["panel"].items()}
+
+
+def _curves(document: Document, row: dict[str, Any]) -> dict[str, FloatArray]:
+    """Return the points of all curves; reports those without length."""
     for name, curve in row["curve"].items():
         points = curve["points_mm"]
         if points is not None and not np.ptp(points, axis=0).any():
             got = f"{len(points)} points at one place"
             document.report(("curve", name, "points_mm"), got, "a curve")
-    document.finish()
     return {name: curve["points_mm"] for name, curve in row["curve"].items()}
 
 

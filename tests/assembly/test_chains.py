@@ -1,0 +1,136 @@
+"""Chains of lines on one wire: found by where they lie, laid from junction to junction."""
+
+import dataclasses
+import itertools
+
+import numpy as np
+import pytest
+
+from seatlook import io, mesh
+from seatlook.assembly.hooking import hooks_beside
+from seatlook.assembly.lines import Line, rings_on
+from seatlook.errors import InputError
+from seatlook.model import Hook
+from support.example_scene import EXAMPLE, write_example_files
+
+TURN = np.linspace(np.pi, 0.0, 181)
+SHOE = 0.2 * np.column_stack([np.cos(TURN), np.sin(TURN), 0.0 * TURN])  # right, rear, left
+LENGTH = mesh.length(SHOE)
+
+
+def part(low, high, *, lift=0.005):
+    """The piece of the horseshoe between two shares of its length, above it."""
+    arc = mesh.arc_length(SHOE)
+    at = np.linspace(low * LENGTH, high * LENGTH, 40)
+    points = np.column_stack([np.interp(at, arc, c) for c in SHOE.T])
+    return points + np.array([0.0, 0.0, lift])
+
+
+def hooks(lines, wires=None, **choices):
+    return hooks_beside(lines, wires or {"shoe": SHOE}, reach=0.03, stage="hook", **choices)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_seams_under_a_horseshoe_make_one_hook_in_their_order(seed):
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(2, 9))
+    cuts = np.concatenate([[0.0], np.sort(rng.uniform(0.05, 0.95, count - 1)), [1.0]])
+    if np.diff(cuts).min() < 0.03:
+        cuts = np.linspace(0.0, 1.0, count + 1)
+    lines = {}
+    for k in range(count):
+        ends = (cuts[k], cuts[k + 1])
+        lines[f"seam {k}"] = part(*(ends if rng.random() < 0.5 else ends[::-1]))
+    # Across the wire, and beside it but farther away.
+    lines["across"] = np.array([[0.0, 0.1, 0.0], [0.0, 0.3, 0.0]])
+    lines["farther"] = part(0.2, 0.6, lift=0.02)
+    order = rng.permutation(list(lines))
+    (hook,) = hooks({name: lines[name] for name in order})
+    assert hook.chain == tuple(f"seam {k}" for k in range(count))
+    assert hook.wire == hook.name == "shoe"
+    np.testing.assert_allclose(hook.junctions, cuts * LENGTH, atol=2e-4)
+    assert (hook.start, hook.end) == (0.0, None)
+
+
+def test_one_line_over_the_whole_wire_needs_no_junctions():
+    (hook,) = hooks({"seam": part(1.0, 0.0)})
+    assert (hook.line, hook.chain, hook.junctions) == ("seam", (), ())
+
+
+def test_a_line_goes_to_the_nearest_wire_and_a_gap_parts_a_chain():
+    lower = SHOE - [0.0, 0.0, 0.012]
+    found = hooks({"one": part(0.0, 0.3), "two": part(0.6, 1.0)}, {"far": lower, "near": SHOE})
+    assert [hook.wire for hook in found] == ["near", "near"]
+    assert {hook.name for hook in found} == {"near.left", "near.right"}
+    assert found[0].junctions == pytest.approx((0.0, 0.3 * LENGTH), abs=2e-4)
+
+
+def test_a_line_that_goes_on_beyond_its_wire_is_hooked_in_part():
+    wire = part(0.2, 0.8, lift=0.0)
+    (hook,) = hooks({"seam": part(0.0, 1.0)}, {"wire": wire})
+    assert hook.start == pytest.approx(0.2 * LENGTH, abs=0.02)
+    assert hook.end == pytest.approx(0.8 * LENGTH, abs=0.02)
+
+
+def chained(cuts, turned, junctions):
+    """Lines of a chain on one array of points, some of them turned, and the rings on them."""
+    x, lines, count = [], [], 0
+    for (low, high), turn in zip(itertools.pairwise(cuts), turned, strict=True):
+        points = part(*((high, low) if turn else (low, high)))
+        x.append(points)
+        lines.append(Line(count + np.arange(len(points)), mesh.arc_length(points)))
+        count += len(points)
+    hook = Hook(name="h", chain=tuple("abc"), wire="shoe", stage="hook", junctions=junctions)
+    return lines, hook, np.concatenate(x)
+
+
+@pytest.mark.parametrize("turned", [(False, False, False), (True, False, True)])
+@pytest.mark.parametrize("pitch", [None, 0.03])
+def test_rings_of_a_chain_go_to_their_places_whichever_way_lines_run(turned, pitch):
+    cuts = np.array([0.0, 0.25, 0.6, 1.0])
+    lines, hook, x = chained(cuts, turned, tuple(cuts * LENGTH))
+    ring = rings_on(lines, dataclasses.replace(hook, pitch=pitch), SHOE, x)
+    np.testing.assert_allclose(ring.points.at(x) - ring.target, [[0, 0, 0.005]] * len(ring.at),
+                               atol=1e-3)  # fmt: skip
+    assert (np.diff(ring.at) > 1e-4).all()  # one ring at each junction
+    for cut in cuts[1:-1]:
+        assert np.abs(ring.at - cut * LENGTH).min() < 1e-4
+    assert ring.length.sum() == pytest.approx(LENGTH, rel=1e-4)
+
+
+def test_a_stretch_changes_gradually_at_junctions():
+    cuts = np.array([0.0, 0.3, 0.6, 1.0])
+    lines, hook, x = chained(cuts, (False,) * 3, (0.0, 0.31 * LENGTH, 0.6 * LENGTH, LENGTH))
+    ring = rings_on(lines, hook, SHOE, x)
+    step = mesh.segment_lengths(ring.target) / np.diff(ring.at)
+    assert np.abs(np.diff(step)).max() < 0.01  # 1.033 to 0.967, were it by pieces
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (('line = "left bolster"', ""), "line: got neither, expected one of line and chain"),
+        (('line = "left bolster"', 'line = "left bolster"\nchain = ["front"]'), "got both"),
+        (('line = "left bolster"', 'chain = ["left bolster", "left bolster"]'), "twice"),
+        (('line = "left bolster"', 'chain = ["left bolstr"]'), "did you mean 'left bolster'"),
+        (
+            ('wire = "wire left"', 'wire = "wire left"\njunctions_mm = [0.0]'),
+            "junctions_mm: got [0.0], expected 2 places",
+        ),
+        (
+            ('wire = "wire left"', 'wire = "wire left"\njunctions_mm = [90.0, 10.0]'),
+            "expected places that rise along the curve",
+        ),
+        (
+            ('wire = "wire left"', 'wire = "wire left"\njunctions_mm = [0.0, 900.0]'),
+            "expected places on the curve, which is 460.0 mm long",
+        ),
+    ],
+)
+def test_chains_that_cannot_be_are_refused(tmp_path, change, message):
+    path = write_example_files(tmp_path) / "scene.toml"
+    assert change[0] in EXAMPLE
+    path.write_text(EXAMPLE.replace(*change, 1))
+    with pytest.raises(InputError) as caught:
+        io.load_scene(path)
+    assert message in str(caught.value)
