@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 import shutil
+import warnings
+from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from seatlook import assemble, io
 from seatlook.assembly.seam_guess import propose_seams
 from seatlook.assembly.unfolding import CLEAR, lay_out
 from seatlook.cli import run
-from seatlook.errors import InputError
-from seatlook.model import Pattern
+from seatlook.cli._app import _format_warning
+from seatlook.errors import InputError, InputWarning
+from seatlook.model import Edge, Foam, Panel, Pattern
 from seatlook.solver.foam.distance import distance_field
 from support.dxf_sheet import Sheet
 
@@ -74,6 +80,8 @@ def test_the_scene_is_complete_and_its_comments_stay(started):
     assert "# [[hook]]" in text
     seams = (started / "seams.toml").read_text()
     assert seams.count("# probability ") == 14
+    assert seams.count("mm; notches at") + seams.count("mm; no notch; free") == 32
+    assert seams.count("; free\n") == 4
     assert "notches meet" in seams
 
 
@@ -153,6 +161,57 @@ def test_check_says_how_to_go_on_and_puts_the_largest_ease_first(started, capsys
     assert shares[0] > 0.5
 
 
+def test_the_pattern_is_drawn_with_the_names_of_all_edges(started):
+    text = (started / "pattern.svg").read_text()
+    pattern = io.load_scene(started / "scene.toml").pattern
+    for edge in pattern.edges.values():
+        own = edge.name.removeprefix(f"{edge.panel}.")
+        assert re.search(rf">\d+  {own}  {1e3 * pattern.edge_length(edge.name):.1f} mm", text)
+    for panel in pattern.panels:
+        assert f">{panel.name}</text>" in text
+    with Image.open(started / "pattern.png") as picture:
+        assert picture.size[0] == 1600
+
+
+def one_panel(path: Path, width: float) -> Path:
+    square = np.array([[0.0, 0.0], [width, 0.0], [width, 0.4], [0.0, 0.4]])
+    panel = Panel(
+        name="ALONE", outline=square, corners=np.arange(4), cut_outline=square,
+        grain=np.array([0.0, 1.0]),
+    )  # fmt: skip
+    other = replace(panel, name="OTHER", outline=square * [0.71, 0.83], cut_outline=square)
+    none: MappingProxyType[str, Edge] = MappingProxyType({})
+    io.write_dxf(Pattern(panels=(panel, other), edges=none, seams=()), path)
+    return path
+
+
+def test_what_cannot_be_guessed_is_written_as_far_as_it_goes_and_listed(own, tmp_path, capsys):
+    cut = one_panel(tmp_path / "cut.dxf", 0.5)
+    out = tmp_path / "out"
+    assert run(["init", str(cut), str(own / "foam.obj"), "--out", str(out)]) == 0
+    said = capsys.readouterr().err
+    assert "missing: seams that join OTHER to ALONE; until then they lie beside the foam" in said
+    scene = io.load_scene(out / "scene.toml")
+    assert len(scene.pattern.edges) == 8
+    assert set(scene.placement) == {"ALONE", "OTHER"}
+    assert (out / "pattern.svg").exists()
+
+
+def test_a_pattern_out_of_scale_with_its_foam_is_named(own, tmp_path, capsys):
+    cut = one_panel(tmp_path / "cut.dxf", 5.0)
+    words = ["init", str(cut), str(own / "foam.obj"), "--out", str(tmp_path / "out")]
+    with pytest.warns(InputWarning, match="5000 mm is unusual"):
+        assert run(words) == 0
+    assert "the pattern is too large for it" in capsys.readouterr().err
+
+
+def test_warnings_are_said_without_places_in_the_program():
+    text = warnings.formatwarning("x", InputWarning, "file.py", 3)
+    assert "file.py" in text
+    assert _format_warning("x", InputWarning, "file.py", 3) == "note: x\n"
+    assert "file.py" in _format_warning("x", UserWarning, "file.py", 3)
+
+
 def test_edits_are_not_written_over(started, own, capsys):
     words = ["init", str(own / "cover.dxf"), str(own / "foam.obj"), "--out", str(started)]
     before = (started / "scene.toml").read_bytes()
@@ -187,6 +246,28 @@ def test_a_panel_that_nothing_joins_is_named(demo_scene):
     )
     with pytest.raises(InputError, match="got none that joins REAR to INSERT"):
         lay_out(alone, scene.foam)
+
+
+@pytest.mark.parametrize("size", [(0.28, 0.13, 0.18), (0.5, 0.15, 0.7), (0.13, 0.5, 0.7)])
+def test_the_largest_panel_faces_the_broad_side_of_a_foam_that_stands(demo_scene, size):
+    scene = io.load_scene(demo_scene)
+    body = scene.foam
+    own = np.ptp(body.vertices, axis=0)
+    # A cushion stood up on its rear, or on its side.
+    order = [0, 2, 1] if size[1] < size[0] else [2, 1, 0]
+    stood = (body.vertices / own)[:, order] * size
+    faces = body.faces[:, ::-1]
+    foam = Foam(vertices=np.ascontiguousarray(stood), faces=faces, material=body.material)
+    layout = lay_out(scene.pattern, foam, partial=True)
+    pose = layout.poses[layout.first]
+    facing = [0.0, -1.0, 0.0] if size[1] < size[0] else [1.0, 0.0, 0.0]
+    np.testing.assert_allclose(pose.rotation[:, 2], facing, atol=1e-12)
+    np.testing.assert_allclose(pose.rotation[:, 1], [0.0, 0.0, 1.0], atol=1e-12)
+    field = distance_field(foam.vertices, foam.faces)
+    line = scene.pattern.panel(layout.first).outline @ pose.rotation[:, :2].T + pose.translation
+    assert field.at(line)[0].min() > 0.0
+    for curve in layout.curves.values():
+        assert np.isfinite(curve).all()
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,11 @@ before, and folded down until it would come too near to the foam.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, QhullError
 
 from seatlook.errors import InputError, did_you_mean
 from seatlook.mesh import arc_length
@@ -20,6 +20,9 @@ from seatlook.solver.foam.distance import DistanceField, distance_field
 
 LIFT = 0.020  # m above the foam's top, of the panel laid first
 CLEAR = 0.012  # m from the foam, of the panels folded down
+_CLOSED = 1e-6  # m; ends of an edge nearer than that are one
+_APART = 0.05  # m between panels laid beside the foam
+_AS_FLAT = 1.05  # a foam this high over its smaller width lies; higher, it stands
 _STEEPEST = 85.0  # deg, of a fold
 _STEP = 5.0  # deg
 _NEAR = 0.03  # m; the foam's height is looked for within it
@@ -34,11 +37,13 @@ class Layout:
     Parameters
     ----------
     curves : name of a free edge -> (k, 3) [m] round the foam, where the edge comes to lie
+    apart : panels that no seam joins to the others
     """
 
     first: str
     poses: MappingProxyType[str, Pose]
     curves: MappingProxyType[str, FloatArray]
+    apart: tuple[str, ...] = ()
 
 
 def lay_out(
@@ -48,19 +53,24 @@ def lay_out(
     first: str | None = None,
     turn_deg: float = 0.0,
     free: Sequence[str] = (),
+    partial: bool = False,
 ) -> Layout:
     """Place panels over the foam, joined at their seams and folded down around it.
 
+    The first panel lies on the foam's broad side: on top of a cushion, in front of what stands.
+
     Parameters
     ----------
-    first : panel on top, by default the largest
-    turn_deg : how far it is turned, counter-clockwise seen from above; at 0 its v axis points back
+    first : panel on the broad side, by default the largest
+    turn_deg : how far it is turned, counter-clockwise seen from outside; at 0 its v axis points
+        back on a cushion, up on what stands
     free : names of edges that are sewn to nothing, for which curves are made
+    partial : lay panels that no seam joins beside the foam, and leave out curves that find no place
 
     Raises
     ------
     InputError
-        No panel of this name, or panels that no seam joins to the others.
+        No panel of this name; unless ``partial``, panels that no seam joins to the others.
     """
     names = [p.name for p in pattern.panels]
     if first is not None and first not in names:
@@ -70,7 +80,48 @@ def lay_out(
             expected=f"one of {', '.join(names)}",
             hint=did_you_mean(first, names),
         )
-    top = first or max(names, key=lambda n: _area(pattern.panel(n).outline))
+    # Laid out with the broad side up, then turned back with it.
+    turn = _broad_side_up(foam.vertices)
+    body = replace(foam, vertices=np.ascontiguousarray(foam.vertices @ turn.T))
+    top = first or max(names, key=lambda n: outline_area(pattern.panel(n).outline))
+    poses, fall = _joined_panels(pattern, body, top, turn_deg)
+    unsewn = tuple(name for name in names if name not in poses)
+    if unsewn and not partial:
+        raise InputError.single(
+            "seams",
+            got=f"none that joins {', '.join(unsewn)} to {top}",
+            expected="every panel sewn to another",
+            hint="complete the seams file, then: seatlook init ... --seams FILE",
+        )
+    hanging = [name for name in free if pattern.edges[name].panel in poses]
+    curves = _curves(pattern, body, poses, fall, hanging, partial=partial)
+    poses |= _beside(pattern, body, unsewn)
+    return Layout(
+        first=top,
+        poses=MappingProxyType({name: _turned(poses[name], turn.T) for name in names}),
+        curves=MappingProxyType({name: line @ turn for name, line in curves.items()}),
+        apart=unsewn,
+    )
+
+
+def _broad_side_up(vertices: FloatArray) -> FloatArray:
+    """Rotation (3, 3) that turns the broad side of a foam up: its top, its front or its left."""
+    width, depth, height = np.ptp(vertices, axis=0)
+    if height <= _AS_FLAT * min(width, depth):
+        return np.eye(3)
+    if depth <= width:
+        return np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+    return np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+
+
+def _turned(pose: Pose, turn: FloatArray) -> Pose:
+    return Pose(rotation=turn @ pose.rotation, translation=turn @ pose.translation)
+
+
+def _joined_panels(
+    pattern: Pattern, foam: Foam, top: str, turn_deg: float
+) -> tuple[dict[str, Pose], dict[str, float]]:
+    """Poses of the panels that seams join to the first, and the height at which each hangs."""
     field = distance_field(foam.vertices, foam.faces)
     poses = {top: _on_top(pattern.panel(top).outline, foam, turn_deg)}
     depth, fall = {top: 0}, {top: foam.vertices[:, 2].max()}
@@ -79,19 +130,23 @@ def lay_out(
         poses[hinge.hung] = _folded(pattern, hinge, poses[hinge.placed], field)
         depth[hinge.hung] = depth[hinge.placed] + 1
         fall[hinge.hung] = _height(foam, _seam_middle(hinge, poses[hinge.placed]))
-    unsewn = [name for name in names if name not in poses]
-    if unsewn:
-        raise InputError.single(
-            "seams",
-            got=f"none that joins {', '.join(unsewn)} to {top}",
-            expected="every panel sewn to another",
-            hint="complete the seams file, then: seatlook init ... --seams FILE",
-        )
-    return Layout(
-        first=top,
-        poses=MappingProxyType({name: poses[name] for name in names}),
-        curves=MappingProxyType(_curves(pattern, foam, poses, fall, free)),
-    )
+    return poses, fall
+
+
+def _beside(pattern: Pattern, foam: Foam, names: Sequence[str]) -> dict[str, Pose]:
+    """Lay panels flat in a row beside the foam, where they can be seen."""
+    right = float(foam.vertices[:, 0].max())
+    level = float(foam.vertices[:, 2].max()) + LIFT
+    depth = float(foam.vertices[:, 1].mean())
+    poses = {}
+    for name in names:
+        outline = pattern.panel(name).outline
+        low, high = outline.min(axis=0), outline.max(axis=0)
+        right += _APART
+        place = np.array([right - low[0], depth - (low[1] + high[1]) / 2, level])
+        poses[name] = Pose(rotation=np.eye(3), translation=place)
+        right += float(high[0] - low[0])
+    return poses
 
 
 def _on_top(outline: FloatArray, foam: Foam, turn_deg: float) -> Pose:
@@ -212,8 +267,13 @@ def _curves(
     poses: Mapping[str, Pose],
     fall: Mapping[str, float],
     free: Sequence[str],
+    *,
+    partial: bool,
 ) -> dict[str, FloatArray]:
-    """For each free edge, the stretch of the foam's girth that it comes to lie on."""
+    """For each free edge, the stretch of the foam's girth that it comes to lie on.
+
+    An edge without one is left out if ``partial``.
+    """
     placed = {name: _placed(pattern, name, poses) for name in free}
     ends = {(name, k): line[k, :2] for name, line in placed.items() for k in (0, -1)}
     meet = {
@@ -224,10 +284,15 @@ def _curves(
     for name in placed:
         panel = pattern.edges[name].panel
         reach = _reach(pattern.edge_points(name), pattern.panel(panel).outline)
-        rim = _girth(foam, max(fall[panel] - reach, float(foam.vertices[:, 2].min())))
         # Ends of neighbours are sewn together: both go where they meet half way.
         first, last = (np.mean([ends[e] for e in meet[name, k]], axis=0) for k in (0, -1))
-        curves[name] = _along(rim, first, last)
+        try:
+            rim = _girth(foam, max(fall[panel] - reach, float(foam.vertices[:, 2].min())))
+            curves[name] = _along(rim, first, last)
+        except InputError:
+            if not partial:
+                raise
+    meet = {end: [e for e in others if e[0] in curves] for end, others in meet.items()}
     return {name: _joined(name, curves, meet) for name in curves}
 
 
@@ -251,7 +316,10 @@ def _joined(
 
 def _reach(edge: FloatArray, outline: FloatArray) -> float:
     """How far [m] an edge lies from the opposite side of its panel."""
-    along = (edge[-1] - edge[0]) / np.linalg.norm(edge[-1] - edge[0])
+    chord = edge[-1] - edge[0]
+    if np.linalg.norm(chord) < _CLOSED:
+        return float(np.ptp(outline, axis=0).min()) / 2
+    along = chord / np.linalg.norm(chord)
     across = (outline - edge[0]) @ np.array([-along[1], along[0]])
     return float(across.max())
 
@@ -264,7 +332,10 @@ def _girth(foam: Foam, height: float) -> FloatArray:
     crosses = ((start[:, 2] - height) * (end[:, 2] - height) <= 0.0) & (rise != 0.0)
     share = (height - start[crosses, 2:]) / rise[crosses, None]
     section = (start[crosses] + share * (end[crosses] - start[crosses]))[:, :2]
-    hull = section[ConvexHull(section).vertices]
+    try:
+        hull = section[ConvexHull(section).vertices]
+    except (QhullError, ValueError) as error:
+        raise _no_girth() from error
     hull = np.concatenate([hull, hull[:1]])
     arc = arc_length(hull)
     at = np.linspace(0.0, arc[-1], 401)
@@ -280,17 +351,24 @@ def _along(rim: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
     ahead = (first + np.arange((last - first) % n + 1)) % n
     back = (first - np.arange((first - last) % n + 1)) % n
     line = points[min(ahead, back, key=len)]
+    if np.hypot(*(start - end)) < _CLOSED:
+        line = np.roll(points, -first, axis=0)[[*range(n), 0]]
     if len(line) < 2:
-        raise InputError.single(
-            "foam",
-            got="no girth below a free edge of the cover",
-            expected="a foam as wide as the cover (is --unit right?)",
-        )
+        raise _no_girth()
     arc = arc_length(line)
     at = np.linspace(0.0, arc[-1], _SAMPLES)
     return np.column_stack([np.interp(at, arc, line[:, k]) for k in range(3)])
 
 
-def _area(outline: FloatArray) -> float:
+def _no_girth() -> InputError:
+    return InputError.single(
+        "foam",
+        got="no girth below a free edge of the cover",
+        expected="a foam as wide as the cover (is --unit right?)",
+    )
+
+
+def outline_area(outline: FloatArray) -> float:
+    """Area [m2] inside a closed outline (k, 2) [m]."""
     x, y = outline.T
     return 0.5 * float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)))

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import sys
 import traceback
+import warnings
 from collections.abc import Sequence
+from typing import Any
 
 from cyclopts import App, CycloptsError
 
 from seatlook._interrupt import EXIT_CODE, asked
 from seatlook._version import __version__
 from seatlook.cli._output import drop_output, manner, say
-from seatlook.errors import SeatlookError, SolverError
+from seatlook.errors import InputWarning, SeatlookError, SolverError
 
 _HELP = """Where a car-seat cover wrinkles, why, and whether anyone will see it.
 
@@ -40,6 +42,8 @@ _GO_ON = {
     "sweep": _AGAIN,
 }
 
+_PYTHONS_OWN = warnings.formatwarning
+
 app = App(
     name="seatlook",
     help=_HELP,
@@ -55,6 +59,7 @@ def run(tokens: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if tokens is None else tokens)
     manner.quiet = "--quiet" in words
     words = [word for word in words if word != "--quiet"]
+    warnings.formatwarning = _format_warning
     try:
         code = app(words, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
@@ -70,6 +75,8 @@ def run(tokens: Sequence[str] | None = None) -> int:
         return 0
     except (Exception, KeyboardInterrupt) as error:
         return _failed(error, words)
+    finally:
+        warnings.formatwarning = _PYTHONS_OWN
     return code if isinstance(code, int) else 0
 
 
@@ -91,3 +98,12 @@ def _failed(error: BaseException, words: Sequence[str]) -> int:
         "this is a fault of seatlook, not of the input",
     )
     return 70
+
+
+def _format_warning(
+    message: Warning | str, category: type[Warning], *place: Any, **line: Any
+) -> str:
+    """What is said of an input is for the reader; where in seatlook it is said is not."""
+    if issubclass(category, InputWarning):
+        return f"note: {message}\n"
+    return _PYTHONS_OWN(message, category, *place, **line)

@@ -119,6 +119,9 @@ def init(
             allowance_mm=allowance_mm, layers=_layers(layer), top=top,
             turn_deg=turn_deg, force=force,
         )  # fmt: skip
+    from seatlook.report.pattern_drawing import draw_pattern
+
+    drawing, _ = draw_pattern(first.proposal, out)
     note(*first.notes)
     reasons, proposal = first.reasons, first.proposal
     table(
@@ -129,6 +132,8 @@ def init(
     note(
         f"free edges: {', '.join(proposal.free) or 'none'}",
         f"hooks: {', '.join(map(hook_words, first.hooks)) or 'none'}",
+        *(f"missing: {what}" for what in first.missing),
+        f"drawing with the names of all edges: {drawing} and .png",
         f"scene: {first.scene}; read {out / 'seams.toml'} over, then:",
         f"  seatlook check {first.scene}",
         f"  seatlook evaluate {first.scene} --out {out / 'gallery'}",

@@ -192,7 +192,7 @@ def _is_jog(panel: Panel, arc: FloatArray, group: Sequence[int]) -> bool:
     at = float(arc[group[len(group) // 2]])
     sharp = len(group) > 1 or abs(turn_at(panel, arc, at, _ARM)) > _SHARP
     arm = min(_LONG_ARM, 0.12 * float(arc[-1]))
-    return sharp and abs(turn_at(panel, arc, at, arm)) < _STRAIGHT
+    return bool(sharp and abs(turn_at(panel, arc, at, arm)) < _STRAIGHT)
 
 
 def turn_at(panel: Panel, arc: FloatArray, at: float, arm: float) -> float:

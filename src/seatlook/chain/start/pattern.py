@@ -26,6 +26,13 @@ from seatlook.chain.start.scene_file import (
     refuse_scene,
     write_scene,
 )
+from seatlook.chain.start.to_do import (
+    doubtful_seams,
+    scale_notes,
+    seam_notes,
+    seam_reasons,
+    what_is_missing,
+)
 from seatlook.errors import InputError
 from seatlook.io.pattern.dxf import Reading
 from seatlook.io.pattern.units import Units
@@ -78,17 +85,19 @@ class FirstScene:
     proposal : the seams, and why each was guessed
     hooks : seams that lie beside wires
     notes : what was read of the pattern and what was not, and what was guessed of the foam
+    missing : sentences on what is left to be filled in by hand
     """
 
     scene: Path
     proposal: Proposal
     hooks: tuple[Hook, ...]
     notes: tuple[str, ...]
+    missing: tuple[str, ...]
 
     @property
     def reasons(self) -> dict[str, str]:
         """Seam -> why it was guessed, and what else would fit."""
-        return _reasons(self.proposal)
+        return seam_reasons(self.proposal)
 
 
 def init(
@@ -97,7 +106,8 @@ def init(
     """Write a commented scene for a pattern and a foam, ready to check and evaluate.
 
     Guesses which edges are sewn together, where the panels start, where the free edges are pulled
-    to, and which wires the seams are hooked to.
+    to, and which wires the seams are hooked to. What cannot be guessed is written as far as it is
+    known, and listed.
 
     Raises
     ------
@@ -122,16 +132,25 @@ def init(
         first=choices.get("top"),
         turn_deg=choices.get("turn_deg", 0.0),
         free=proposal.free,
+        partial=True,
     )
     if own_seams is None:
-        io.write_seams(proposal.pattern, folder / SEAMS, notes=_reasons(proposal))
+        io.write_seams(
+            proposal.pattern, folder / SEAMS,
+            notes=seam_notes(proposal), remarks=doubtful_seams(proposal),
+        )  # fmt: skip
     files = cut, folder / SEAMS if own_seams is None else own_seams
     draft = _draft(files, proposal.pattern, layout, filling, choices)
     return FirstScene(
         scene=write_scene(draft, folder),
         proposal=proposal,
         hooks=draft.hooks,
-        notes=(*_pattern_notes(cut, choices), *filling.notes),
+        notes=(
+            *_pattern_notes(cut, choices),
+            *filling.notes,
+            *scale_notes(proposal.pattern, filling.body),
+        ),
+        missing=what_is_missing(proposal, layout),
     )
 
 
@@ -220,11 +239,3 @@ def _placed(pattern: Pattern, edge: str, layout: Layout) -> FloatArray:
     """Points (k, 3) [m] of an edge where its panel starts."""
     pose = layout.poses[pattern.edges[edge].panel]
     return np.asarray(pattern.edge_points(edge) @ pose.rotation[:, :2].T + pose.translation)
-
-
-def _reasons(proposal: Proposal) -> dict[str, str]:
-    return {
-        name: reason
-        + (f"; would fit as well: {', '.join(also)}" if (also := proposal.rivals.get(name)) else "")
-        for name, reason in proposal.reasons.items()
-    }

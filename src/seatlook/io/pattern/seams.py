@@ -6,7 +6,7 @@ stays true when a CAD system numbers its points anew.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Unpack
@@ -236,26 +236,34 @@ def _check_lengths(
         )
 
 
-def write_seams(pattern: Pattern, path: Path, *, notes: Mapping[str, str] | None = None) -> None:
+def write_seams(
+    pattern: Pattern,
+    path: Path,
+    *,
+    notes: Mapping[str, str] | None = None,
+    remarks: Sequence[str] = (),
+) -> None:
     """Write the seams file of a pattern, with both lengths of each seam as checks.
 
-    ``notes`` are comments on seams, by name.
+    Parameters
+    ----------
+    notes : comments on seams and edges, by name
+    remarks : comments at the end of the file
     """
     notes = notes or {}
     blocks = ["schema = 1"]
     for edge in pattern.edges.values():
         points = 1e3 * pattern.edge_points(edge.name)
         blocks.append(
-            f"[edge.{quoted(edge.name)}]\n"
+            f"{_comment(notes.get(edge.name))}[edge.{quoted(edge.name)}]\n"
             f"panel = {quoted(edge.panel)}\n"
             f"from_mm = {points[0].round(6).tolist()}\n"
             f"to_mm = {points[-1].round(6).tolist()}"
         )
     for seam in pattern.seams:
         length_b = sum(pattern.edge_length(b) for b in seam.b)
-        note = f"# {notes[seam.name]}\n" if seam.name in notes else ""
         blocks.append(
-            f"{note}[[seam]]\n"
+            f"{_comment(notes.get(seam.name))}[[seam]]\n"
             f"name = {quoted(seam.name)}\n"
             f"a = {quoted(seam.a)}\n"
             f"b = [{', '.join(map(quoted, seam.b))}]\n"
@@ -264,4 +272,9 @@ def write_seams(pattern: Pattern, path: Path, *, notes: Mapping[str, str] | None
             f"length_mm = {1e3 * pattern.edge_length(seam.a):.3f}\n"
             f"length_b_mm = {1e3 * length_b:.3f}"
         )
+    blocks += [_comment(remark).rstrip() for remark in remarks]
     write_text(path, "\n\n".join(blocks) + "\n")
+
+
+def _comment(text: str | None) -> str:
+    return "".join(f"# {line}\n" for line in text.splitlines()) if text else ""
