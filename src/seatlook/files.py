@@ -13,6 +13,7 @@ import os
 import stat
 import tempfile
 import traceback
+from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from io import BufferedReader
@@ -27,6 +28,7 @@ T = TypeVar("T")
 MIB = 2**20
 # Bytes of a file that is read at once; docs/reference/bad-input.md lists all limits.
 LARGEST_FILE = 512 * MIB
+_KEPT = 8  # files of a reader whose content is kept
 LARGEST_TEXT = 4 * MIB  # of scenes, seams, curves, materials, sweeps, votes
 
 
@@ -163,6 +165,31 @@ def read_file(path: Path, *, key: str = "file", at_most: int = LARGEST_FILE) -> 
     """Return the content of a file, see ``opened``."""
     with opened(path, key=key, at_most=at_most) as stream:
         return stream.read()
+
+
+def kept(read: Callable[P, T]) -> Callable[P, T]:
+    """Keep what the last files of a reader held: sweeps and comparisons read the same ones again.
+
+    The file is told by its content, not by its time. What is kept may not be changed.
+    """
+    known: OrderedDict[object, T] = OrderedDict()
+
+    @functools.wraps(read)
+    def wrapped(*args: P.args, **kwargs: P.kwargs) -> T:
+        path = Path(str(args[0]))
+        state = state_of(path)
+        content = hashlib.sha256(read_file(path)).digest()
+        key = content, repr((args, sorted(kwargs.items())))
+        result = known[key] if key in known else read(*args, **kwargs)
+        # A file that changed in between was another one to ``read``.
+        if state_of(path) == state:
+            known[key] = result
+            known.move_to_end(key)
+        if len(known) > _KEPT:
+            known.popitem(last=False)
+        return result
+
+    return wrapped
 
 
 def read_text(path: Path, *, key: str = "file", at_most: int = LARGEST_TEXT) -> str:

@@ -18,7 +18,7 @@ from ezdxf.lldxf.const import DXFError
 from shapely.errors import ShapelyError
 
 from seatlook.errors import InputError, InputWarning, Problem
-from seatlook.files import reader
+from seatlook.files import kept, reader
 from seatlook.io.pattern.allowance import only_cut, with_allowance
 from seatlook.io.pattern.drawing.drawing import Drawing, assign_layers, open_drawing, refusal
 from seatlook.io.pattern.drawing.entities import Drawn, has_line, read_entities, read_texts
@@ -117,6 +117,17 @@ def report_dxf(path: Path, **reading: Unpack[Reading]) -> PatternReport:
 @reader("a pattern (DXF)")
 def read_drawing(path: Path, **reading: Unpack[Reading]) -> tuple[tuple[Panel, ...], PatternReport]:
     """Read the pieces of a pattern, and what is to say of them; see ``read_dxf``."""
+    panels, report = _read_drawing(path, **reading)
+    # What is said may be added to by who reads it.
+    return panels, replace(
+        report, pieces=list(report.pieces), left=report.left.copy(), notes=list(report.notes)
+    )
+
+
+@kept
+def _read_drawing(
+    path: Path, **reading: Unpack[Reading]
+) -> tuple[tuple[Panel, ...], PatternReport]:
     drawing = open_drawing(path, reading.get("encoding"))
     assign_layers(path, drawing.document, reading.get("layers", {}))
     notch = 1e3 * reading.get("smallest_notch", SMALLEST_NOTCH)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.files import read_file, reader, write_text
+from seatlook.files import kept, read_file, reader, write_text
 from seatlook.io.schema import shown
 from seatlook.io.surface.axes import Axes, Unit, Up, file_axes
 from seatlook.io.surface.formats import joined, read_parts
@@ -58,6 +58,7 @@ def read_surface(
     return read_surface_axes(path, unit=unit, up=up, ungrouped=ungrouped)[0]
 
 
+@reader("a design surface")
 def read_surface_axes(
     path: Path, *, unit: Unit | None = None, up: Up | None = None, ungrouped: str | None = None
 ) -> tuple[GroupedMesh, Axes]:
@@ -91,6 +92,7 @@ def _named(path: Path, ungrouped: str | None) -> GroupedMesh:
     )
 
 
+@kept
 def _read_obj(path: Path, ungrouped: str | None) -> GroupedMesh:
     text = read_file(path).decode("utf-8-sig", errors="replace")
     # Other ends of lines than these may be in names.
