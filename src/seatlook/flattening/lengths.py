@@ -12,13 +12,16 @@ from seatlook.flattening.pattern import pair
 from seatlook.flattening.relax import HeldEdges, Openings, flatten_patch
 from seatlook.flattening.surface import Patch, Side, darts
 from seatlook.mesh import arc_length, segment_lengths
-from seatlook.model import Fabric, FloatArray
+from seatlook.model import Fabric, FloatArray, IntArray
+
+_Slits = list[tuple[IntArray, IntArray]]  # vertices of both sides of darts, mouth to tip
 
 # [m] over which the stretch beside an eased sewing line fades out. A linear fade over a strip is
 # a bend in the plane, which costs no strain; a shorter one drives the ease to the line's ends.
 _EASE_REACH = 0.15
 _EASE_PRECISION = 2e-5  # [m]
-_EASE_ROUNDS = 12
+_EASE_ROUNDS = 30
+_LEAST_RESPONSE = 0.25  # of a line's length to growth along it, over its length; about 1 as a rule
 _LENGTH_PRECISION = 2e-5  # [m] of a sewing line; both lines of a seam then agree to 4e-5
 _LENGTH_ROUNDS = 8
 # Share of its length by which a dart is open at least: so much is left between its sides where the
@@ -64,7 +67,9 @@ def relax_panel(
     Holding an eased side piece by piece would crumple it: a chain under compression buckles.
     """
     eased = [side for side in own if side.name in ease]
-    x, held = _with_lengths(patch, [s for s in own if s not in eased], ratio, start, fabric)
+    slits = darts(patch, own)
+    plain = [side for side in own if side not in eased]
+    x, held = _with_lengths(patch, plain, ratio, start, fabric, slits)
     if not eased:
         return x
     agreed = np.array(
@@ -79,12 +84,14 @@ def relax_panel(
         step = (goal - lengths) / slope
         amount = amount + step
         growth = _growth(patch, eased, amount)
-        apart = _openings(patch, own, x)
+        apart = _openings(patch, slits, x)
         x = flatten_patch(
             patch.vertices, patch.faces, held, openings=apart, growth=growth, start=x, fabric=fabric
         )
         before, lengths = lengths, _lengths(patch, x, eased)
         slope = np.where(step == 0, slope, (lengths - before) / np.where(step == 0, 1.0, step))
+        # Rounding of small steps must not throw the next one far off.
+        slope = np.clip(slope, _LEAST_RESPONSE * agreed, agreed / _LEAST_RESPONSE)
     raise SeatlookError("it cannot be stretched to the ease of its sewing lines")
 
 
@@ -94,6 +101,7 @@ def _with_lengths(
     ratio: Mapping[str, FloatArray],
     start: FloatArray,
     fabric: Fabric | None,
+    slits: _Slits,
 ) -> tuple[FloatArray, HeldEdges]:
     """Flatten a panel with the lengths of some sides held; return the lengths that did it too.
 
@@ -101,7 +109,7 @@ def _with_lengths(
     trace, what is missing is added to the lengths asked for (the method of multipliers).
     """
     held = _held(patch, own, ratio)
-    form, apart = (patch.vertices, patch.faces), _openings(patch, own, start)
+    form, apart = (patch.vertices, patch.faces), _openings(patch, slits, start)
     x = flatten_patch(*form, held, openings=apart, start=start, fabric=fabric)
     goal = held.length
     for _ in range(_LENGTH_ROUNDS):
@@ -111,15 +119,15 @@ def _with_lengths(
         if max((abs(part.sum()) for part in by_side), default=0.0) < _LENGTH_PRECISION:
             break
         held = HeldEdges(vertices=held.vertices, length=held.length + missing)
-        apart = _openings(patch, own, x)
+        apart = _openings(patch, slits, x)
         x = flatten_patch(*form, held, openings=apart, start=x, fabric=fabric)
     return x, held
 
 
-def _openings(patch: Patch, own: Sequence[Side], x: FloatArray) -> Openings | None:
+def _openings(patch: Patch, slits: _Slits, x: FloatArray) -> Openings | None:
     """Return what keeps the sides of a panel's darts apart, None where it has none."""
     parts = []
-    for a, b in darts(patch, own):
+    for a, b in slits:
         middle = (x[a] + x[b]) / 2
         along = np.gradient(middle, axis=0)
         along /= np.linalg.norm(along, axis=1, keepdims=True)

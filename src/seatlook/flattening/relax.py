@@ -20,9 +20,11 @@ _SETTLED = 1e-8  # share of the energy that the last step won
 _STRAINLESS = 1e-16  # mean squared strain that is none
 # Weight of a held edge length against the faces beside it: 1e4 holds lengths to about 1e-6.
 _HOLD = 1e4
-# Where lengths are far from those asked for, they are drawn there by and by: at once, a border that
-# is to become much shorter crumples.
-_FAR, _FAR_HOLDS, _FAR_SETTLED = 0.03, (1.0, 1e2), 1e-3
+# Where lengths, or sides of darts [m], are far from those asked for, lengths are drawn there by and
+# by: at once, a border that is to become much shorter crumples.
+_FAR, _OVERLAP, _FAR_HOLDS, _FAR_SETTLED = 0.03, 1e-4, (1.0, 1e2), 1e-3
+# Of the sides of a dart that lie over each other [1]: it leaves them some hundredths of a mm.
+_APART = 1e2
 # Green's strain gives way far from 0. Faces beyond this stretch, where the form strains the panel
 # by a quarter, resist more, the weight times as much.
 _BOUND, _RESISTANCE = 0.8, 2.0
@@ -52,17 +54,18 @@ class Openings:
 
     def energy(self, span: FloatArray) -> FloatArray:
         """Return what it costs (k,) that sides lie over each other."""
-        return np.asarray(_HOLD * self._missing(span) ** 2 / 2)
+        return np.asarray(_APART * self.missing(span) ** 2 / 2)
 
     def derivatives(self, span: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return slope (k, 2) and curvature (k, 2, 2) of the energy; none of it is below 0."""
-        missing = self._missing(span)
+        missing = self.missing(span)
         square = self.across[:, :, None] * self.across[:, None, :]
-        active = np.where(missing > 0, _HOLD, 0.0)
+        active = np.where(missing > 0, _APART, 0.0)
         stiff = active[:, None, None] * square
-        return -_HOLD * missing[:, None] * self.across, stiff, np.zeros_like(stiff)
+        return -_APART * missing[:, None] * self.across, stiff, np.zeros_like(stiff)
 
-    def _missing(self, span: FloatArray) -> FloatArray:
+    def missing(self, span: FloatArray) -> FloatArray:
+        """Return how far (k,) [m] the sides are from where they are to be at least."""
         return np.asarray(np.maximum(self.least - (span * self.across).sum(axis=1), 0.0))
 
 
@@ -110,7 +113,7 @@ def flatten_patch(
         ties.append(_chord(x, float(area.sum())))
     nothing = _STRAINLESS * float(area.sum())
     left = None
-    for hold, settled in _holds(x, held):
+    for hold, settled in _holds(x, held, openings):
         lengths = [] if held is None else [_lengths(held, hold * float(area.mean()))]
         x, left = minimise(
             x, gradient, area, laws, [*ties, *lengths], steps=_MAX_STEPS,
@@ -127,13 +130,18 @@ def flatten_patch(
     )
 
 
-def _holds(x: FloatArray, held: HeldEdges | None) -> list[tuple[float, float]]:
+def _holds(
+    x: FloatArray, held: HeldEdges | None, openings: Openings | None
+) -> list[tuple[float, float]]:
     """Return how much lengths are held, one time after the other, and when each is settled."""
     if held is None or len(held.length) == 0:
         return [(_HOLD, _SETTLED)]
     span = x[held.vertices[:, 1]] - x[held.vertices[:, 0]]
-    off = np.abs(np.linalg.norm(span, axis=1) / held.length - 1).max()
-    softly = [(hold, _FAR_SETTLED) for hold in _FAR_HOLDS] if off > _FAR else []
+    far = np.abs(np.linalg.norm(span, axis=1) / held.length - 1).max() > _FAR
+    if openings is not None:
+        span = x[openings.vertices[:, 1]] - x[openings.vertices[:, 0]]
+        far |= openings.missing(span).max() > _OVERLAP
+    softly = [(hold, _FAR_SETTLED) for hold in _FAR_HOLDS] if far else []
     return [*softly, (_HOLD, _SETTLED)]
 
 
