@@ -35,6 +35,7 @@ DEEPEST_START, INSIDE = 0.020, 0.2  # m; share of a panel that may start deeper
 LARGEST, SMALLEST = 4.0, 0.01  # area of the panels over that of the foam; .55 on the demo
 TWISTED = 0.95  # gap of a seam with one side turned round, over its gap; 1.15 and more on the demo
 EXCHANGED = 0.5  # gap of two seams with exchanged partners, over their gap
+FALLEN_APART = 0.8  # the same, where the cover is in fewer pieces with exchanged partners
 _APART = 0.050  # m, mean gap from which partners can be exchanged
 _SHARES = np.linspace(0.0, 1.0, 11)  # of a seam's length, where gaps are measured
 
@@ -174,14 +175,17 @@ def _seams(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[Contradiction]
                 f"{_place(b[0])})",
                 "sides that run the same way: exchange from and to, or reverse",
             )
-    pairs = {
-        (seams.index(one), seams.index(two)): "; sewn so, the panels make no cover"
-        for one, two in exchanged(scene.pattern)
-    }
+    certain, likely = (
+        {(seams.index(one), seams.index(two)) for one, two in pairs}
+        for pairs in exchanged(scene.pattern)
+    )
     for i, j in combinations(range(len(sides)), 2):
         other = _nearer(sides[i][0], sides[j][1]) + _nearer(sides[j][0], sides[i][1])
-        far = gaps[i] + gaps[j] > 2 * _APART and other < EXCHANGED * (gaps[i] + gaps[j])
-        if (i, j) in pairs or (far and alike(scene.pattern, seams[i], seams[j])):
+        gap = gaps[i] + gaps[j]
+        nearer = other < EXCHANGED * gap or ((i, j) in likely and other < FALLEN_APART * gap)
+        far = gap > 2 * _APART and nearer and alike(scene.pattern, seams[i], seams[j])
+        if far or (i, j) in certain:
+            why = "; sewn so, the panels make no cover" if (i, j) in certain else ""
             yield lines.seam(
                 "exchanged seams",
                 i,
@@ -189,10 +193,10 @@ def _seams(lines: _Lines, scene: Scene, cover: Cover) -> Iterator[Contradiction]
                 f"{seams[i].name!r} and {seams[j].name!r}, {1e3 * gaps[i]:.0f} and "
                 f"{1e3 * gaps[j]:.0f} mm from side to side at {_place(sides[i][0][5])} and "
                 f"{_place(sides[j][0][5])}; with each other's partners {1e3 * other / 2:.0f} mm"
-                f"{pairs.get((i, j), '')}",
+                f"{why}",
                 "each edge sewn to the partner beside it",
             )
-    if not pairs and not (surface := sewn_surface(scene.pattern, seams)).closed:
+    if not certain and not (surface := sewn_surface(scene.pattern, seams)).closed:
         yield _no_cover(lines, surface)
 
 

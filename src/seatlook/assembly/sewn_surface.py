@@ -34,9 +34,11 @@ class SewnSurface:
     ----------
     handles : 0 for a disc, a sphere, or either with holes
     points : places that become one, with the sum of the panels' angles there [rad]
+    parts : how many pieces it falls into
     """
 
     handles: int
+    parts: int
     points: tuple[tuple[frozenset[Place], float], ...]
 
     @property
@@ -53,40 +55,50 @@ def sewn_surface(pattern: Pattern, seams: Iterable[Seam]) -> SewnSurface:
         for one, other in outlines.pairs(seam):
             twins[one], twins[other] = other, one
     if any(twins[other] != one for one, other in twins.items()):
-        return SewnSurface(0, ())  # an edge in two seams is refused where seams are read
+        return SewnSurface(0, 0, ())  # an edge in two seams is refused where seams are read
     pieces = outlines.pieces(twins)
     point = _points(pieces, twins)
     panels = {panel for (panel, _), _ in pieces}
     joined = _classes(panels, [(one[0][0], other[0][0]) for one, other in twins.items()])
     edges = len(pieces) - len(twins) // 2
     euler = len(set(point.values())) - edges + len(panels)
-    handles = (2 * len(set(joined.values())) - _rims(pieces, twins) - euler) // 2
+    parts = len(set(joined.values()))
+    handles = (2 * parts - _rims(pieces, twins) - euler) // 2
     gathered: dict[Place, list[Place]] = {}
     for place, name in point.items():
         gathered.setdefault(name, []).append(place)
     return SewnSurface(
         handles,
+        parts,
         tuple((frozenset(ps), sum(map(outlines.angle, ps))) for ps in gathered.values()),
     )
 
 
-def exchanged(pattern: Pattern) -> list[tuple[Seam, Seam]]:
-    """Pairs of seams with which the sewn panels can be no cover, and without which they can.
+def exchanged(pattern: Pattern) -> tuple[list[tuple[Seam, Seam]], list[tuple[Seam, Seam]]]:
+    """Pairs of seams, each of which fits the other's partner as well as its own.
 
-    Each fits the other's partner as well as its own.
+    Returns
+    -------
+    certain : with which the sewn panels can be no cover, and without which they can
+    likely : with which they fall into more pieces than without; so do two covers in one scene
     """
     seams = pattern.seams
-    if sewn_surface(pattern, seams).closed:
-        return []
-    found = []
+    now = sewn_surface(pattern, seams)
+    certain: list[tuple[Seam, Seam]] = []
+    likely: list[tuple[Seam, Seam]] = []
+    if now.closed and now.parts <= 1:
+        return certain, likely
     for one, two in combinations(seams, 2):
         if not alike(pattern, one, two, tolerance=_FIT):
             continue
         swapped = replace(one, b=two.b), replace(two, b=one.b)
         others = [seam for seam in seams if seam not in (one, two)]
-        if sewn_surface(pattern, [*others, *swapped]).closed:
-            found.append((one, two))
-    return found
+        then = sewn_surface(pattern, [*others, *swapped])
+        if then.closed and not now.closed:
+            certain.append((one, two))
+        elif then.closed and then.parts < now.parts:
+            likely.append((one, two))
+    return certain, likely
 
 
 def alike(pattern: Pattern, one: Seam, two: Seam, *, tolerance: float = 0.1) -> bool:

@@ -127,12 +127,13 @@ def _view(
     tints = _PANELS[np.arange(len(cover.panel_names)) % len(_PANELS)]
     thin = Body(vertices=cover.positions, faces=cover.faces, colour=tints[cover.panel])
     view = LineView(camera, None if cover.foam is None else _solid(cover.foam), thin)
-    for loop in boundary_loops(cover.faces):
-        border = cover.positions[np.append(loop, loop[0])]
-        view.stroke(Stroke(points=border, colour=_OUTLINE, width=1.0))
-    for line in sorted(lines, key=lambda line: line.kind == "seam"):
-        for stroke in _strokes(line):
-            view.stroke(stroke)
+    borders = [
+        Stroke(points=cover.positions[np.append(loop, loop[0])], colour=_OUTLINE, width=1.0)
+        for loop in boundary_loops(cover.faces)
+    ]
+    # Seams last: they are what is looked at.
+    ordered = sorted(lines, key=lambda line: line.kind == "seam")
+    view.draw([*borders, *(stroke for line in ordered for stroke in _strokes(line))])
     for one in wrong:
         for place in one.places:
             view.ring(place, _WRONG)

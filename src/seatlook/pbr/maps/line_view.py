@@ -5,7 +5,9 @@ Nothing is lit but by a lamp beside the camera, so it takes a fraction of a seco
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -132,28 +134,27 @@ class LineView:
         result[over] = share < 1.0 - _BEHIND
         return result
 
-    def stroke(self, stroke: Stroke) -> None:
-        """Draw a line: whole where it lies before the solid body, dashed and faint behind."""
-        points = _dense(stroke.points, self.camera)
-        pixels, _ = self.camera.pixels(points)
-        hidden = self.hidden(points)
-        faint = _faint(stroke.colour)
-        travelled = np.concatenate(
-            [[0.0], np.cumsum(np.linalg.norm(np.diff(pixels, axis=0), axis=1))]
-        )
-        dashes = (travelled // _DASH) % 2 == 0
-        begin = 0
-        for k in range(1, len(points) + 1):
-            if k < len(points) and (hidden[k], dashes[k] | ~hidden[k]) == (
-                hidden[begin],
-                dashes[begin] | ~hidden[begin],
-            ):
-                continue
-            if not hidden[begin]:
-                self._line(pixels[begin : k + 1], stroke.colour, stroke.width)
-            elif dashes[begin]:
-                self._line(pixels[begin : k + 1], faint, max(1.0, 0.7 * stroke.width))
-            begin = k
+    def draw(self, strokes: Sequence[Stroke]) -> None:
+        """Draw lines: whole where they lie before the solid body, dashed and faint behind."""
+        dense = _dense([stroke.points for stroke in strokes], self.camera)
+        ends = np.cumsum([len(points) for points in dense])[:-1]
+        points = np.concatenate(dense)
+        pixels = np.split(self.camera.pixels(points)[0], ends)
+        hidden = np.split(self.hidden(points), ends)
+        for stroke, own, behind in zip(strokes, pixels, hidden, strict=True):
+            self._stroke(stroke, own, behind)
+
+    def _stroke(self, stroke: Stroke, pixels: FloatArray, hidden: npt.NDArray[np.bool_]) -> None:
+        steps = np.linalg.norm(np.diff(pixels, axis=0), axis=1)
+        odd = (np.concatenate([[0.0], np.cumsum(steps)]) // _DASH) % 2 == 1
+        kind = np.where(hidden, 1 + odd, 0)  # 0 before the body, 1 a dash behind it, 2 between
+        starts = [0, *(np.flatnonzero(np.diff(kind)) + 1), len(pixels)]
+        for begin, end in pairwise(starts):
+            piece = pixels[begin : end + 1]
+            if kind[begin] == 0:
+                self._line(piece, stroke.colour, stroke.width)
+            elif kind[begin] == 1:
+                self._line(piece, _faint(stroke.colour), max(1.0, 0.7 * stroke.width))
 
     def _line(self, pixels: FloatArray, colour: Colour, width: float) -> None:
         if len(pixels) < 2:
@@ -175,16 +176,19 @@ class LineView:
         return self._picture.resize(self.camera.size, Pillow.Resampling.BOX)
 
 
-def _dense(points: FloatArray, camera: Camera) -> FloatArray:
-    """The line with places about ``_STEP`` apart: it may go behind the solid body halfway."""
-    pixels, _ = camera.pixels(points)
-    steps = np.linalg.norm(np.diff(pixels, axis=0), axis=1)
-    counts = np.clip(np.ceil(steps / _STEP), 1, 2000).astype(np.int64)
-    parts = [
-        a + (b - a) * (np.arange(n) / n)[:, None]
-        for a, b, n in zip(points[:-1], points[1:], counts, strict=True)
-    ]
-    return np.concatenate([*parts, points[-1:]])
+def _dense(lines: Sequence[FloatArray], camera: Camera) -> list[FloatArray]:
+    """Lines with places about ``_STEP`` apart: they may go behind the solid body halfway."""
+    ends = np.cumsum([len(points) for points in lines])[:-1]
+    dense = []
+    for points, pixels in zip(
+        lines, np.split(camera.pixels(np.concatenate(lines))[0], ends), strict=True
+    ):
+        steps = np.linalg.norm(np.diff(pixels, axis=0), axis=1)
+        counts = np.clip(np.ceil(steps / _STEP), 1, 2000)
+        at = np.concatenate([[0.0], np.cumsum(counts)])
+        places = np.arange(at[-1] + 1)
+        dense.append(np.column_stack([np.interp(places, at, column) for column in points.T]))
+    return dense
 
 
 def _faint(colour: Colour) -> Colour:
