@@ -15,6 +15,7 @@ from seatlook.io.pattern.units import Units
 from seatlook.io.surface.axes import Unit, Up
 
 if TYPE_CHECKING:
+    from seatlook.chain.start.pattern import FirstScene
     from seatlook.chain.start.surface import FlattenedScene
 
 
@@ -95,7 +96,6 @@ def init(
     """
     from seatlook.chain.start import init as start
     from seatlook.chain.start import scene_from
-    from seatlook.chain.start.scene_file import hook_words
 
     if from_ is not None:
         made = scene_from(
@@ -119,6 +119,12 @@ def init(
             allowance_mm=allowance_mm, layers=_layers(layer), top=top,
             turn_deg=turn_deg, force=force,
         )  # fmt: skip
+    _show_guesses(first, out, json=json)
+
+
+def _show_guesses(first: FirstScene, out: Path, *, json: bool) -> None:
+    """Draw the pattern, print what was guessed and what is missing, and how to go on."""
+    from seatlook.chain.start.scene_file import hook_words
     from seatlook.report.pattern_drawing import draw_pattern
 
     drawing, _ = draw_pattern(first.proposal, out)
