@@ -294,3 +294,40 @@ def test_a_whole_seat_of_two_bodies_is_one_foam():
     skin = mended(vertices, faces, unite=True)
     assert is_clean(skin.vertices, skin.faces)
     assert np.ptp(skin.vertices, axis=0) == pytest.approx([0.9, 1.2, 1.0])
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize(
+    "choices",
+    [
+        {},
+        {"close": True},
+        {"close": True, "body": 1, "smooth": 0.02},
+        {"close": True, "unite": True},
+    ],
+    ids=["as-it-is", "close", "body", "unite"],
+)
+def test_whatever_comes_is_a_solid_or_refused(seed, choices):
+    """Heaps of triangles, wrong corners, coarse digits, and parts of a noisy surface."""
+    rng = np.random.default_rng(seed)
+    vertices, faces = cushion(2)
+    kind = seed % 4
+    if kind == 0:
+        vertices = rng.uniform(-0.3, 0.3, (15, 3))
+        faces = rng.integers(0, 15, (40, 3))
+    elif kind == 1:
+        faces[rng.integers(len(faces), size=9), rng.integers(3, size=9)] = rng.integers(99, size=9)
+    elif kind == 2:
+        vertices = vertices.round(2)
+    else:
+        faces = faces[rng.uniform(size=len(faces)) < 0.8]
+        vertices = vertices + rng.normal(0, 0.01, vertices.shape)
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    try:
+        skin = mended(vertices, faces, **choices)
+    except InputError:
+        return
+    edges = np.sort(np.stack([skin.faces, np.roll(skin.faces, -1, 1)], 2).reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    assert volume(skin.vertices, skin.faces) > 0

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
 
+from seatlook.errors import InputError
 from seatlook.mesh.mending.skin import SLIVER_M, Skin
 from seatlook.mesh.polyline import length
 from seatlook.mesh.surface import FloatArray, IntArray, boundary_loops, edges
@@ -34,7 +35,14 @@ class Hole(NamedTuple):
 
 def find_holes(vertices: FloatArray, faces: IntArray) -> list[Hole]:
     """Return the open borders, the longest first."""
-    loops = boundary_loops(faces)
+    try:
+        loops = boundary_loops(faces)
+    except KeyError as error:  # a border that comes to a vertex and does not leave it
+        raise InputError.single(
+            "surface",
+            got="borders that are no closed lines",
+            expected="a surface that can be mended",
+        ) from error
     holes = [Hole(loop, length(vertices[np.append(loop, loop[0])])) for loop in loops]
     return sorted(holes, key=lambda hole: -hole.length)
 

@@ -81,16 +81,25 @@ def mend_body(skin: Skin, choices: Mending, place: Place) -> None:
     bodies = [b for b in find_bodies(skin, piece) if b.volume > least_volume(skin.vertices)]
     if not bodies:
         raise InputError.single("surface", got="nothing inside", expected="a body with a volume")
+    inside = np.zeros(len(skin.faces), dtype=bool)
+    inside[np.concatenate([body.faces for body in bodies])] = True
+    if not inside.all():
+        skin.note("faces with nothing inside dropped", (~inside).sum(),
+                  skin.middle(int(np.argmin(inside))))  # fmt: skip
+        skin.keep(inside)
+        bodies = find_bodies(skin, _agreed(skin).piece)
     if len(bodies) > 1 and not choices.unite and choices.body is None:
         raise _several(skin, bodies, place)
     if choices.body is not None:
         choose(skin, bodies, choices.body)
     elif len(bodies) > 1:
         unite(skin, bodies)
+    skin.compact()
     mend_slivers(skin, asked=True)
     if choices.smooth:
         smooth(skin, choices.smooth)
     skin.compact()
+    _check_solid(skin, place)
 
 
 def mend_sheet(skin: Skin, choices: Mending) -> None:
@@ -173,6 +182,8 @@ def _close(skin: Skin, choices: Mending, place: Place) -> None:
         return
     if choices.close:
         fill(skin, holes)
+        # A patch may end on an edge that has its two faces already.
+        mend_crowded_edges(skin)
         return
     count = sum(len(hole.loop) for hole in holes)
     middle = skin.vertices[holes[0].loop].mean(axis=0)
@@ -183,6 +194,21 @@ def _close(skin: Skin, choices: Mending, place: Place) -> None:
         expected="a closed surface",
         hint="close fills the holes, thicken_mm gives an open shell a thickness",
     )
+
+
+def _check_solid(skin: Skin, place: Place) -> None:
+    """Refuse what is still no surface of a body after all."""
+    table = sides(skin.faces)
+    turns = np.bincount(table.edge, np.where(table.forward, 1, -1))
+    bad = np.flatnonzero(((table.members != 2) | (turns != 0))[table.edge])
+    if len(bad):
+        raise InputError.single(
+            "surface",
+            got=f"{len(np.unique(table.edge[bad]))} edges without two faces that agree, the first "
+            f"at {place(skin.middle(int(bad[0]) // 3))}",
+            expected="a surface that can be mended",
+            hint="mend it there, where it was drawn",
+        )
 
 
 def _several(skin: Skin, bodies: list[Body], place: Place) -> InputError:

@@ -7,7 +7,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from seatlook.mesh.mending.skin import Sides, Skin, sides
-from seatlook.mesh.surface import FloatArray, IntArray, face_areas, face_normals, winding
+from seatlook.mesh.surface import FloatArray, IntArray, face_areas, face_vectors, winding
 
 _FIN = 0.1  # of the area; a smaller sheet that ends in the air is no part of a body
 
@@ -67,12 +67,12 @@ def _drop_walls(skin: Skin) -> None:
     crowd, patch = table.crowd().reshape(-1, 3), _patches(skin, table)
     bordering = np.flatnonzero(np.bincount(patch, (crowd > 2).any(axis=1)) > 0)
     area = face_areas(skin.vertices, skin.faces)
-    normal = face_normals(skin.vertices, skin.faces)
+    across = face_vectors(skin.vertices, skin.faces)  # twice as long as their areas
     wall = np.zeros(int(patch.max()) + 1, dtype=bool)
     triangles = skin.vertices[skin.faces]
     for number in bordering:
         face = int(np.where(patch == number, area, -1.0).argmax())
-        step = 1e-3 * np.sqrt(area[face]) * normal[face]
+        step = 1e-3 * across[face] / np.sqrt(max(area[face], 1e-12))
         inside, outside = (
             winding(triangles[face].mean(axis=0) + sign * step, triangles) for sign in (-1, 1)
         )

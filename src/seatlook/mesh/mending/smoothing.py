@@ -37,6 +37,7 @@ def smoothed(vertices: FloatArray, faces: IntArray, wavelength: float) -> FloatA
     stiffness, mass = _laplacian(vertices, faces)
     t2 = (wavelength / (2 * np.pi)) ** 4
     n = len(vertices)
+    mass = np.maximum(mass, 1e-12)  # m2; of a vertex whose faces have all but no area
 
     def apply(x: FloatArray) -> FloatArray:
         return np.asarray(mass * x + t2 * (stiffness @ ((stiffness @ x) / mass)))
