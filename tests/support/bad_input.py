@@ -81,7 +81,7 @@ _WRONG: dict[str, tuple[tuple[str, str, str], ...]] = {
     "votes": (
         ("of another questionnaire", '"questionnaire": "', '"questionnaire": "x'),
         ("a choice that there is not", '"choice": "left"', '"choice": "both"'),
-        ("no name", '"judge": "', '"juge": "'),
+        ("no name", '"judge": "', '"jdge": "'),
     ),
     "foam OBJ": (
         ("a number that is none", "v ", "v x"),
@@ -95,7 +95,7 @@ _WRONG: dict[str, tuple[tuple[str, str, str], ...]] = {
     ),
     "DXF": (
         ("no unit", "Units: METRIC", "Units: FURLONGS"),
-        ("no pieces", "BLOCK", "BLOC"),
+        ("no pieces", "BLOCK", "BLOX"),
         ("a section without end", "ENDSEC", "ENDSE"),
         ("no end", "EOF", "EO"),
         ("a coordinate of nan", " 10\n", " 10\nnan\n999\n"),
