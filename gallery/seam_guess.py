@@ -121,15 +121,15 @@ def chart(rows: Sequence[Sequence[object]]) -> None:
         sums = groups.setdefault(key, [0, 0, 0])
         for k, value in enumerate((seams, int(str(right)) + int(str(alike)), wrong)):
             sums[k] += int(str(value))
-    labels = [f"{shape}\n{notches}" for shape, notches in groups]
+    labels = [f"{shape}, {notches}" for shape, notches in groups]
     figure, axis = plt.subplots(figsize=(max(8.0, 0.48 * len(labels)), 3.6))
     x = np.arange(len(labels))
     axis.bar(x, [100 * r / n for n, r, _ in groups.values()], color="#005cab", label="right")
     axis.bar(x, [100 * w / n for n, _, w in groups.values()], color="#c85200", label="wrong")
-    axis.set_xticks(x, labels, fontsize=6)
+    axis.set_xticks(x, labels, fontsize=7, rotation=90)
     axis.set_ylabel("of the true seams [%]")
     axis.set_ylim(0, 105)
-    axis.legend(loc="lower right")
+    axis.legend(loc="upper right")
     figure.tight_layout()
     figure.savefig(CHARTS / "seam_guess.svg")
 
