@@ -22,7 +22,8 @@ from seatlook.pbr.kernels.bvh import new_stack
 from seatlook.pbr.kernels.light import Lights, above_horizon, across, angle_of, arriving
 from seatlook.pbr.kernels.lobes import GGX, F_Schlick, lobe_of
 from seatlook.pbr.kernels.noise import even
-from seatlook.pbr.kernels.rays import ABOVE, DARK, OPEN, UNSENT, direction, face_met
+from seatlook.pbr.kernels.rays import DARK, OPEN, UNSENT, direction, face_met
+from seatlook.pbr.kernels.shadow import ABOVE
 from seatlook.pbr.kernels.stage import Look, frame, towards_eye
 from seatlook.pbr.kernels.surface import Mesh, along, blend, cross, dot, minus, row, row_of, unit
 from seatlook.pbr.kernels.tables import coupling_at
