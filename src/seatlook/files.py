@@ -49,10 +49,10 @@ def reader(expected: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
     >>> @reader("a number")
     ... def read_number(path: Path) -> float:
     ...     return float("x")
-    >>> read_number(Path("a.txt"))
+    >>> read_number(Path("a.txt"))  # doctest: +ELLIPSIS
     Traceback (most recent call last):
     seatlook.errors.InputError: a.txt: file: got ValueError: could not convert string to float: \
-'x', expected a number
+'x', expected a number...
     """
 
     def wrap(read: Callable[P, T]) -> Callable[P, T]:
@@ -96,7 +96,7 @@ def _where(error: Exception) -> str:
 
 @contextmanager
 def opened(
-    path: Path, *, key: str = "file", at_most: int | None = None
+    path: Path, *, key: str = "file", at_most: int | None = None, expected: str = "a file"
 ) -> Iterator[BufferedReader]:
     """Open a file for reading that may be anything.
 
@@ -104,6 +104,7 @@ def opened(
     ----------
     key : who names the file, for messages
     at_most : bytes; None: any size
+    expected : what the file should be, for messages
 
     Raises
     ------
@@ -121,12 +122,12 @@ def opened(
         _check_regular(path.stat(), refusal)
         stream = os.fdopen(os.open(path, flags), "rb")
     except FileNotFoundError as error:
-        raise refusal("no such file", "a file") from error
+        raise refusal("no such file", expected) from error
     except InputError:
         raise
     # ValueError: a name that no file can have, with a null character or half a pair.
     except (OSError, ValueError) as error:
-        raise refusal(getattr(error, "strerror", error), "a file") from error
+        raise refusal(getattr(error, "strerror", error), expected) from error
     with stream:
         before = os.fstat(stream.fileno())
         state = state_of(path)

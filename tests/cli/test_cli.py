@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -351,8 +352,7 @@ def test_an_interrupted_command_ends_with_130_and_leaves_nothing_half_written(tm
 def evaluated(demo_scene: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Evaluate the coarse demo once; one of its two limits cannot be kept."""
     folder = tmp_path_factory.mktemp("evaluated")
-    for file in demo_scene.parent.iterdir():
-        (folder / file.name).write_bytes(file.read_bytes())
+    shutil.copytree(demo_scene.parent, folder, dirs_exist_ok=True)
     scene = folder / "scene.toml"
     text = scene.read_text().replace('"driver_door", "top"]', '"top"]\nsize = [96, 54]')
     text += '\n[accept."INSERT interior"]\nw2_mean = 1e-9\n[accept."REAR interior"]\nw2_mean = 50\n'
@@ -440,7 +440,8 @@ def test_shape_and_seam_lines_are_compared_with_the_design(evaluated, tmp_path):
         assert 0 < row["mean_mm"] < row["largest_mm"]
         assert row["mean_mm"] == pytest.approx(float(kept[row["seam"]]["mean_mm"]))
     text = (evaluated / "scene.toml").read_text()
-    (evaluated / "bare.toml").write_text(text.replace('[design]\nfile = "design.obj"', "[design]"))
+    bare_text = text.replace('[design]\nfile = "panels.obj"\nunit = "mm"', "[design]")
+    (evaluated / "bare.toml").write_text(bare_text)
     bare = seatlook("shape", "bare.toml", "result.npz", cwd=evaluated)
     assert bare.returncode == 2
     assert "bare.toml: design: got nothing, expected a table [design] with a file" in bare.stderr

@@ -78,7 +78,7 @@ def test_one_name_with_two_seeds_is_two_people(files, questionnaire):
         ({"choice": "both"}, "votes[2].choice: got 'both', expected one of left, right"),
         ({"choice": "tie"}, "votes[2].choice: got 'tie', expected one of left, right"),
         ({"question": ["x"]}, "votes[2].question: got ['x'], expected one of wrinkles, preference"),
-        ({"trial": True}, "votes[2].trial: got True, expected a number from 0 up"),
+        ({"trial": True}, "votes[2].trial: got true, expected a number from 0 up"),
         ({"trial": -1}, "votes[2].trial: got -1, expected a number from 0 up"),
         ({"seconds": float("nan")}, "votes[2].seconds: got nan, expected seconds from 0 up"),
         ({"left": "s9"}, "votes[2].left: got 's9', expected a stimulus of the questionnaire"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -119,7 +120,8 @@ def test_other_systems_get_advice_of_their_own(system, advice):
     done = run(tell + ASK, MESA_GL_VERSION_OVERRIDE="1.1")
     assert done.returncode == 3, done.stdout + done.stderr
     assert advice in done.stdout
-    assert "VTK's window ended its process with signal" in done.stdout
+    # By the library that VTK finds, an old GL is refused or ends the process of the trial.
+    assert re.search("ended its process with signal|gives no OpenGL that VTK can", done.stdout)
     assert not [word for word in FOREIGN if word in done.stdout]
     ask = "from seatlook.pbr.backend import offscreen_backend; print(offscreen_backend())"
     done = run(tell + ask)

@@ -107,7 +107,10 @@ def init(
         return
     if pattern is None or foam is None or out is None:
         raise InputError.single(
-            "init", got="too little", expected="PATTERN FOAM --out FOLDER, or --from FOLDER"
+            "init",
+            got="too little",
+            expected="PATTERN FOAM --out FOLDER, or --from FOLDER",
+            hint="see: seatlook init --help",
         )
     with progress() as show:
         show("lay out")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -36,6 +35,16 @@ def _is_number(text: str) -> bool:
     return True
 
 
+class _Lines(list[str]):
+    """Lines that end as text files do.
+
+    A writer told so itself would not quote texts that hold the other ending.
+    """
+
+    def write(self, line: str) -> None:
+        self.append(line.removesuffix("\r\n") + "\n")
+
+
 def write_table(path: Path, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """Write heads and rows; None is an empty cell, and texts are ``cell`` s.
 
@@ -43,11 +52,11 @@ def write_table(path: Path, heads: Sequence[str], rows: Iterable[Sequence[object
     --------
     >>> write_table(Path("zones.csv"), ("zone", "w2_mean"), [("seam A", 0.5)])  # doctest: +SKIP
     """
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
+    lines = _Lines()
+    writer = csv.writer(lines)
     writer.writerow(map(cell, heads))
     writer.writerows(map(cell, row) for row in rows)
-    write_text(path, buffer.getvalue())
+    write_text(path, "".join(lines))
 
 
 def write_numbers(path: Path, heads: Sequence[str], columns: Sequence[np.ndarray]) -> None:

@@ -192,7 +192,7 @@ def _vote_problems(
 ) -> Iterator[Problem]:
     if not isinstance(entry, dict) or not set(entry) >= _KEYS:
         expected = f"an object with {', '.join(sorted(_KEYS))}"
-        got = f"keys {shown(sorted(entry))}" if isinstance(entry, dict) else shown(entry)
+        got = f"keys {', '.join(sorted(entry))[:200]}" if isinstance(entry, dict) else shown(entry)
         yield Problem(key=key, got=got, expected=expected, file=path)
         return
     if type(entry["trial"]) is not int or entry["trial"] < 0:

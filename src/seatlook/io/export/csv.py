@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from pathlib import Path
 
-from seatlook.files import write_text
 from seatlook.io.export.vtp import voigt
-from seatlook.io.table import cell
+from seatlook.io.table import write_table
 from seatlook.model import Field, FloatArray, Solution
 
 
@@ -31,11 +28,9 @@ def write_csv(solution: Solution, fields: Sequence[Field], path: Path) -> None:
     for side in ("top", "mid", "bottom"):
         strain = voigt(getattr(solution, f"strain_{side}"))
         columns |= {f"e{ij}_{side}": strain[:, i] for i, ij in enumerate(("11", "22", "12"))}
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(["face", "panel", "zone", *columns])
     values = zip(*(column.tolist() for column in columns.values()), strict=True)
-    for face, row in enumerate(values):
-        panel, zone = cover.panel_names[cover.panel[face]], cover.zone_names[cover.zone[face]]
-        writer.writerow([face, cell(panel), cell(zone), *row])
-    write_text(path, buffer.getvalue())
+    rows = (
+        (face, cover.panel_names[cover.panel[face]], cover.zone_names[cover.zone[face]], *row)
+        for face, row in enumerate(values)
+    )
+    write_table(path, ("face", "panel", "zone", *columns), rows)

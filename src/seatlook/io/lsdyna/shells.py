@@ -12,8 +12,10 @@ from seatlook.io.lsdyna.deck.reader import read_keyword
 from seatlook.model import ShellResult
 from seatlook.model.shells import StrainAxes
 
+_EXPECTED = "a d3plot or a keyword deck"
 
-@reader("a d3plot or a keyword deck")
+
+@reader(_EXPECTED)
 def read_shells(
     path: Path,
     *,
@@ -58,5 +60,5 @@ def read_shells(
 
 
 def _is_binary(path: Path) -> bool:
-    with opened(path) as stream:
+    with opened(path, expected=_EXPECTED) as stream:
         return b"\0" in stream.read(512)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from PIL import Image as Pillow
 from PIL import ImageDraw
 
-from seatlook.mesh import face_normals
+from seatlook.mesh import arc_length, face_normals, segment_lengths
 from seatlook.model import Camera, FloatArray, IntArray
 from seatlook.pbr.maps.labels import Colour
 
@@ -145,8 +145,7 @@ class LineView:
             self._stroke(stroke, own, behind)
 
     def _stroke(self, stroke: Stroke, pixels: FloatArray, hidden: npt.NDArray[np.bool_]) -> None:
-        steps = np.linalg.norm(np.diff(pixels, axis=0), axis=1)
-        odd = (np.concatenate([[0.0], np.cumsum(steps)]) // _DASH) % 2 == 1
+        odd = (arc_length(pixels) // _DASH) % 2 == 1
         kind = np.where(hidden, 1 + odd, 0)  # 0 before the body, 1 a dash behind it, 2 between
         starts = [0, *(np.flatnonzero(np.diff(kind)) + 1), len(pixels)]
         for begin, end in pairwise(starts):
@@ -183,8 +182,7 @@ def _dense(lines: Sequence[FloatArray], camera: Camera) -> list[FloatArray]:
     for points, pixels in zip(
         lines, np.split(camera.pixels(np.concatenate(lines))[0], ends), strict=True
     ):
-        steps = np.linalg.norm(np.diff(pixels, axis=0), axis=1)
-        counts = np.clip(np.ceil(steps / _STEP), 1, 2000)
+        counts = np.clip(np.ceil(segment_lengths(pixels) / _STEP), 1, 2000)
         at = np.concatenate([[0.0], np.cumsum(counts)])
         places = np.arange(at[-1] + 1)
         dense.append(np.column_stack([np.interp(places, at, column) for column in points.T]))
