@@ -5,6 +5,7 @@ from __future__ import annotations
 import _thread
 import os
 import signal
+import sys
 import threading
 from types import FrameType
 
@@ -41,7 +42,16 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
         os.kill(os.getpid(), number)
         return
     _asked.set()
-    timer = threading.Timer(_AGAIN, _thread.interrupt_main)
+    timer = threading.Timer(_AGAIN, _again, [number])
     timer.daemon = True
     timer.start()
     raise KeyboardInterrupt
+
+
+def _again(number: int) -> None:
+    """Interrupt the main thread, also where it waits: of that a flag alone would not wake it."""
+    main = threading.main_thread().ident
+    if sys.platform == "win32" or main is None:
+        _thread.interrupt_main(signal.Signals(number))
+    else:
+        signal.pthread_kill(main, number)

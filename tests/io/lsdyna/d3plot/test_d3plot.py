@@ -218,7 +218,8 @@ def test_a_wrong_unit_is_noticed(save, problems):
 
 def test_missing_file(tmp_path, problems):
     assert problems(read_d3plot, tmp_path / "x") == ["x: file: got no such file, expected a file"]
-    assert problems(read_shells, tmp_path / "x") == ["x: file: got no such file, expected a file"]
+    (message,) = problems(read_shells, tmp_path / "x")
+    assert message == "x: file: got no such file, expected a d3plot or a keyword deck"
 
 
 def test_the_format_is_told_by_the_content(save, problems):
