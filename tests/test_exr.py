@@ -78,3 +78,12 @@ def test_without_the_extra_the_message_names_it(tmp_path):
         "a.exr: picture: got OpenEXR, which needs a package that is not installed, "
         "expected the extra: pip install 'seatlook[exr]'"
     ]
+
+
+def test_a_damaged_picture_is_refused_once(tmp_path, capfd):
+    """The library prints what it stumbles over, past Python; the error says it."""
+    path = tmp_path / "a.exr"
+    write_exr(np.random.default_rng(0).random((64, 128, 3)).astype(np.float32), path)
+    path.write_bytes(path.read_bytes()[:9000])
+    refused(path)
+    assert capfd.readouterr().err == ""

@@ -6,7 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatlook.errors import InputError
-from seatlook.files import cache_folder, file_names, kept, opened, read_file, read_text, reader
+from seatlook.files import (
+    cache_folder,
+    file_names,
+    kept,
+    opened,
+    read_file,
+    read_text,
+    reader,
+    silenced,
+)
 
 
 @pytest.mark.parametrize(
@@ -157,3 +166,17 @@ def test_what_was_read_is_kept_until_the_file_is_another(tmp_path):
         assert read(path) == content
     assert read(path, unit="m") == b"two"
     assert calls == ["mm", "mm", "m"]
+
+
+def test_libraries_are_silenced_and_heard_again(capfd):
+    """Past Python, as a C library writes; also where the library fails, and one within another."""
+
+    def fail():
+        with silenced(), silenced():
+            os.write(2, b"lost\n")
+            raise InputError.single("a", got="b", expected="c")
+
+    with pytest.raises(InputError):
+        fail()
+    os.write(2, b"heard\n")
+    assert capfd.readouterr().err == "heard\n"

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError
-from seatlook.files import LARGEST_FILE, MIB, opened, reader, replacing
+from seatlook.files import LARGEST_FILE, MIB, opened, reader, replacing, silenced
 
 _WHOLE = "a whole OpenEXR picture"
 _HEAD = 1 << 20  # bytes in which the head of a file ends
@@ -51,7 +51,7 @@ def read_exr(path: Path) -> npt.NDArray[np.float16 | np.float32]:
     library = _library(path)
     _check_size(path)
     try:
-        with library.File(str(path)) as file:
+        with silenced(), library.File(str(path)) as file:
             channels = {name: channel.pixels for name, channel in file.channels().items()}
     except (RuntimeError, ValueError) as error:
         raise InputError.single("picture", got=str(error), expected=_WHOLE, file=path) from error

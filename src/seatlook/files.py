@@ -11,7 +11,9 @@ import functools
 import hashlib
 import os
 import stat
+import sys
 import tempfile
+import threading
 import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator
@@ -30,6 +32,8 @@ MIB = 2**20
 LARGEST_FILE = 512 * MIB
 _KEPT = 8  # files of a reader whose content is kept
 LARGEST_TEXT = 4 * MIB  # of scenes, seams, curves, materials, sweeps, votes
+_STDERR = 2
+_silence = threading.RLock()
 
 
 def reader(expected: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
@@ -92,6 +96,30 @@ def _where(error: Exception) -> str:
         return ""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if "seatlook" in f.filename]
     return f"in {frames[-1].name}, {Path(frames[-1].filename).name}" if frames[1:] else ""
+
+
+@contextmanager
+def silenced() -> Iterator[None]:
+    """Keep the C libraries of picture formats from writing on stderr.
+
+    They print what they stumble over, past Python and many times over, and offer no way to turn
+    that off; the error that comes out says it once, with the file. What other threads write
+    meanwhile is lost too, so that only the library's own call belongs in here.
+    """
+    with _silence:
+        try:
+            sys.stderr.flush()
+            stderr = os.dup(_STDERR)
+        except (OSError, ValueError, AttributeError):
+            yield  # closed: nothing to keep quiet
+            return
+        try:
+            with Path(os.devnull).open("wb") as nowhere:
+                os.dup2(nowhere.fileno(), _STDERR)
+            yield
+        finally:
+            os.dup2(stderr, _STDERR)
+            os.close(stderr)
 
 
 @contextmanager

@@ -229,3 +229,21 @@ def test_a_segment_that_cannot_be_an_edge_is_named():
 def test_element_size_must_be_positive():
     with pytest.raises(InputError, match="element_size: got 0"):
         mesh.triangulate(rectangle(0.1, 0.1, 0.01), 0.0)
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_a_hole_is_left_open(turn):
+    t = np.linspace(0, 2 * np.pi, 30, endpoint=False)
+    hole = np.column_stack([0.15 + 0.05 * np.cos(t), 0.1 + 0.05 * np.sin(t)])[::turn]
+    points, faces = mesh.triangulate(rectangle(0.3, 0.2, 0.01), 0.01, holes=[hole])
+    loops = sorted(mesh.boundary_loops(faces), key=len)
+    assert np.array_equal(np.sort(points[loops[0]], axis=0), np.sort(hole, axis=0))
+    assert len(loops) == 2
+    area = 0.3 * 0.2 - 0.5 * 30 * 0.05**2 * np.sin(2 * np.pi / 30)
+    assert mesh.face_areas(points, faces).sum() == pytest.approx(area, rel=1e-9)
+
+
+def test_a_hole_across_the_outline_is_refused():
+    outline = np.array([[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]])
+    with pytest.raises(InputError, match="outline"):
+        mesh.triangulate(outline, 0.1, holes=[outline + 0.1])

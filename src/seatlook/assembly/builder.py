@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
+import shapely
 
 from seatlook import mesh
 from seatlook.assembly.ease import seam_ease
@@ -18,6 +20,7 @@ from seatlook.assembly.lines import (
     rings_on,
     stitches,
 )
+from seatlook.errors import InputError
 from seatlook.model import (
     Anchor,
     FloatArray,
@@ -33,6 +36,8 @@ from seatlook.model import (
 )
 
 CORNER = np.radians(25.0)  # an outline that turns more than this keeps its vertex
+_NARROWEST_HOLE = 1.0  # elements
+_FEWEST_ROUND_A_HOLE = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +77,10 @@ class Builder:
             # Of the drawn span, not of the chords: both sides of a seam keep their scale.
             steps += len(points) * [mesh.arc_length(span)[-1] / len(points)]
         inner = [mesh.resample(line, h) for line in lines.values()]
-        points, faces = mesh.triangulate(np.concatenate(sampled), h, lines=inner, seed=seed)
+        holes = [_sampled_hole(hole, h, panel.name) for hole in panel.holes]
+        points, faces = mesh.triangulate(
+            np.concatenate(sampled), h, lines=inner, holes=holes, seed=seed
+        )
         offset = sum(map(len, self._points))
         self._points.append(points)
         self._faces.append(faces + offset)
@@ -156,3 +164,32 @@ class Builder:
     def frame(self, frame: Frame, scene: Scene, x: FloatArray) -> Anchor:
         """Pull free edges to a curve below the foam."""
         return anchor_on(self.chain(frame.edges), frame, scene.foam.curves[frame.curve], x)
+
+
+def _sampled_hole(hole: FloatArray, size: float, panel: str) -> FloatArray:
+    """Sample a cut-out at about the element size; its sharp corners stay.
+
+    Raises
+    ------
+    InputError
+        A cut-out so narrow that elements of this size cannot go round it.
+    """
+    wide = 2.0 * shapely.maximum_inscribed_circle(shapely.Polygon(hole)).length
+    if wide < _NARROWEST_HOLE * size:
+        x, y = 1e3 * hole.mean(axis=0)
+        raise InputError.single(
+            f"panel.{panel}",
+            got=f"a cut-out {1e3 * wide:.3g} mm wide near ({x:.0f}, {y:.0f}) mm",
+            expected=f"{1e3 * _NARROWEST_HOLE * size:.3g} mm or more, the size of an element",
+            hint="element_size_mm of the panel, or smallest_notch_mm: narrower ones are closed",
+        )
+    ahead, behind = np.roll(hole, -1, axis=0) - hole, hole - np.roll(hole, 1, axis=0)
+    cross = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+    stops = np.flatnonzero(np.abs(np.arctan2(cross, (behind * ahead).sum(axis=1))) > CORNER)
+    stops = stops if len(stops) else np.zeros(1, dtype=np.int64)
+    ring = np.roll(hole, -stops[0], axis=0)
+    ends = np.append(stops - stops[0], len(ring))
+    ring = np.vstack([ring, ring[:1]])
+    sides = [ring[a : b + 1] for a, b in itertools.pairwise(ends)]
+    step = min(size, sum(mesh.length(side) for side in sides) / _FEWEST_ROUND_A_HOLE)
+    return np.concatenate([mesh.resample(side, step)[:-1] for side in sides])

@@ -89,8 +89,8 @@ def wrinkle(
         Folder to write to.
     export
         File with strains and indices per element for other programs: .vtp, .csv, .glb, .k, a
-        dynain deck, or .npz, a result for "seatlook render" and "score". May be given more than
-        once.
+        dynain deck (.radioss.k for OpenRadioss), or .npz, a result for "seatlook render" and
+        "score". May be given more than once.
     """
     if c_threshold_per_mm is not None and bending_radius_mm is not None:
         raise InputError.single(

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError, Problem
 from seatlook.exr import read_exr
-from seatlook.files import LARGEST_FILE, opened, reader
+from seatlook.files import LARGEST_FILE, opened, reader, silenced
 from seatlook.model import TextureMaps
 from seatlook.model.colour import srgb_decode, srgb_encode
 from seatlook.model.texture import Pixels
@@ -137,7 +137,7 @@ def _pixels(path: Path, *, is_albedo: bool) -> tuple[Pixels, tuple[int, int]]:
         with opened(path, at_most=LARGEST_FILE) as stream, warnings.catch_warnings():
             # The library warns of pictures far below the limit here.
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-            with Image.open(stream) as picture:
+            with silenced(), Image.open(stream) as picture:
                 _check_picture(path, picture)
                 shape = picture.size[1], picture.size[0]
                 return _averaged(partial(_strip_of_picture, picture), shape, is_albedo), shape

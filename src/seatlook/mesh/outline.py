@@ -40,6 +40,7 @@ def triangulate(
     element_size: float,
     *,
     lines: Sequence[FloatArray] = (),
+    holes: Sequence[FloatArray] = (),
     seed: int = 0,
 ) -> tuple[FloatArray, IntArray]:
     """Mesh a flat outline with nearly equilateral triangles that prefer no direction.
@@ -55,21 +56,24 @@ def triangulate(
         Mean edge length h aimed at.
     lines : polylines (k, 2) [m]
         Sampled likewise; an end on the outline or on another line coincides with a point there.
+    holes : closed polylines (k, 2) [m], the first vertex not repeated
+        Sampled likewise; the mesh leaves them open.
     seed : int
         The same arguments give the same mesh.
 
     Returns
     -------
     points : (n, 2) float64 [m]
-        The outline first, in its order, then the points of ``lines``, then the free ones.
+        The outline first, in its order, then the points of ``lines`` and of ``holes``, then the
+        free ones.
     faces : (m, 3) int64
-        Counter-clockwise; every segment of outline and lines is an edge.
+        Counter-clockwise; every segment of outline, lines and holes is an edge.
 
     Raises
     ------
     InputError
-        The outline crosses itself or runs clockwise; or no mesh passes the gates (smallest angle
-        20 degrees, 1 % quantile 30, hexagonal bias 0.1), with the place and the reason.
+        The outline crosses itself or a hole, or runs clockwise; or no mesh passes the gates
+        (smallest angle 20 degrees, 1 % quantile 30, hexagonal bias 0.1), with place and reason.
 
     Examples
     --------
@@ -79,8 +83,9 @@ def triangulate(
     >>> bool(np.degrees(angles(points, faces)).min() > 20)
     True
     """
-    region = _region(boundary, element_size)
-    fixed, segments = _constraints(boundary, lines, element_size)
+    region = _region(boundary, holes, element_size)
+    rings = [np.vstack([hole, hole[:1]]) for hole in holes]
+    fixed, segments = _constraints(boundary, [*lines, *rings], element_size)
     problems: list[Problem] = []
     for attempt in range(_ATTEMPTS):
         rng = np.random.default_rng((seed, attempt))
@@ -92,11 +97,13 @@ def triangulate(
     raise InputError(problems)
 
 
-def _region(boundary: FloatArray, element_size: float) -> shapely.Polygon:
+def _region(
+    boundary: FloatArray, holes: Sequence[FloatArray], element_size: float
+) -> shapely.Polygon:
     """Return the outline as a prepared polygon after checking it."""
-    if not np.isfinite(boundary).all():
+    if not np.isfinite(np.concatenate([boundary, *holes])).all():
         raise InputError.single("outline", got="nan or inf", expected="finite numbers")
-    region = shapely.Polygon(boundary)
+    region = shapely.Polygon(boundary, holes)
     if not region.is_valid:
         raise InputError.single(
             "outline", got=shapely.is_valid_reason(region), expected="a simple closed curve"

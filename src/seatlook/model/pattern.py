@@ -51,6 +51,9 @@ class Panel:
         Unit vector along the warp.
     notches, internal_lines
         Marks on the outline; named open polylines (p, 2) [m] inside it, such as tie-down lines.
+    holes : (k, 2) float64 [m] each
+        Cut-outs inside the outline: closed, counter-clockwise, the first vertex not repeated. Their
+        borders are free.
     """
 
     name: str
@@ -62,6 +65,7 @@ class Panel:
     internal_lines: MappingProxyType[str, FloatArray] = field(
         default_factory=lambda: MappingProxyType({})
     )
+    holes: tuple[FloatArray, ...] = ()
 
     def __post_init__(self) -> None:
         floats(self, "outline", None, 2)
@@ -71,9 +75,10 @@ class Panel:
 
     @property
     def area(self) -> float:
-        """Area inside the sew line [m2]."""
-        x, y = self.outline.T
-        return float(0.5 * (x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
+        """Area inside the sew line [m2], without the cut-outs."""
+        rings = [self.outline.T, *(hole.T for hole in self.holes)]
+        outline, *holes = [0.5 * (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() for x, y in rings]
+        return float(outline - sum(holes))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -26,8 +26,8 @@ def zones(
 ) -> tuple[IntArray, tuple[str, ...]]:
     """Assign each face to one zone.
 
-    A user's box comes first, then the band along free edges (which is left out of every
-    statement: the edge is clamped or trimmed), then the band of the nearest seam, then the
+    A user's box comes first, then the band along free edges and cut-outs (which is left out
+    of every statement: the edge is clamped or trimmed), then the band of the nearest seam, then the
     panel's interior.
 
     Parameters
@@ -60,7 +60,8 @@ def zones(
             closer = distance < nearest
             chosen[closer] = index[f"seam {seam_of[edge.name]}"]
             nearest[closer] = distance[closer]
-        for line in _free_polylines(pattern, p.name, seam_of):
+        holes = [np.vstack([hole, hole[:1]]) for hole in p.holes]
+        for line in (*_free_polylines(pattern, p.name, seam_of), *holes):
             chosen[distance_to_polyline(points, line) < BAND] = index[FREE_EDGE]
         for box in (b for b in boxes if b.panel == p.name):
             inside = ((points >= box.low) & (points <= box.high)).all(axis=1)

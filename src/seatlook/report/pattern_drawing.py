@@ -131,6 +131,8 @@ class _Sheet:
             _Text((0.0, 0.0), panel.name, _NAME, _INK, bold=True),
             _Line(place(np.vstack([panel.outline, panel.outline[:1]])), _CLOTH, 0.0, _CLOTH),
         ]
+        rings = [np.vstack([hole, hole[:1]]) for hole in panel.holes]
+        marks += [_Line(place(ring), _INK, 1.0, _PAPER) for ring in rings]
         marks += _grain(panel, place(panel.outline), size)
         below = top + 2 * _MARGIN + float(size[1]) + 6.0
         lines, badges, rows = self._edges(panel, place, below)

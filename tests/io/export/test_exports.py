@@ -177,7 +177,7 @@ def test_same_solution_gives_the_same_bytes(tmp_path, suffix):
 
 def test_unknown_format(tmp_path, problems):
     assert problems(export_cover, solution(), fields_of(wrinkles()), tmp_path / "c.step") == [
-        "c.step: file: got '.step', expected one of .vtp, .csv, .glb, .k, .npz"
+        "c.step: file: got '.step', expected one of .vtp, .csv, .glb, .k, .radioss.k, .npz"
     ]
 
 

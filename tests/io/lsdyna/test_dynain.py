@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from seatlook import wrinkle
 from seatlook.chain.shell_states import ShellCriteria, shell_indices
 from seatlook.errors import InputError
+from seatlook.io.export.writers import export_cover
 from seatlook.io.lsdyna.deck.reader import read_keyword
 from seatlook.io.lsdyna.dynain import write_dynain
 from support.wrinkle_samples import shaped, wave
@@ -69,6 +70,21 @@ def test_panels_are_titled_parts_with_sections(tmp_path, names):
     sections = path.read_text(encoding="utf-8").split("*SECTION_SHELL\n")[1:]
     t = f"{SOLVED.cover.thickness[0] * 1e3:10.4g}"
     assert [s.split("\n")[1] for s in sections] == [t * 4] * 2
+
+
+@pytest.mark.parametrize(("ending", "columns"), [("k", 20), ("radioss.k", 16)])
+def test_strains_of_either_width_are_read_back(tmp_path, ending, columns):
+    """The manual doubles the 10 columns of a field; OpenRadioss reads 16."""
+    path = tmp_path / f"cover.{ending}"
+    export_cover(SOLVED, (), path)
+    entry = path.read_text().split("*INITIAL_STRAIN_SHELL\n")[1].split("\n")[:5]
+    assert [len(card) for card in entry[1:]] == [5 * columns, 2 * columns] * 2
+    assert entry[0].split() == ["1", "1", "2", "1"]
+    write_dynain(SOLVED, tmp_path / "other.k", strain_columns=36 - columns)
+    one, other = (read_keyword(p).read(0) for p in (path, tmp_path / "other.k"))
+    for name in ("strain_inner", "strain_outer"):
+        assert np.array_equal(getattr(one, name), getattr(other, name)), name
+        assert np.abs(getattr(one, name)).max() > 1e-3
 
 
 def test_impossible_strains_and_units_are_refused(tmp_path):

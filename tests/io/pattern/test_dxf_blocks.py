@@ -199,3 +199,47 @@ def test_sizes_in_any_case(sheet):
     sheet.text(sheet.space, "Sample Size: M")
     assert area(sheet.read()[0]["A"].outline) == pytest.approx(L_AREA)
     assert area(sheet.read(size="l")[0]["A"].outline) == pytest.approx(2.25 * L_AREA)
+
+
+def test_layer_0_is_that_of_the_insert(sheet):
+    """As DXF has it: a piece drawn on layer 0 and put on layer 1 is a piece."""
+    block = sheet.document.blocks.new("A")
+    sheet.line(block, L_SHAPE, "0")
+    sheet.line(block, [(50, 20), (50, 80)], "7", closed=False)
+    around = sheet.document.blocks.new("B")
+    sheet.insert("A", around)
+    sheet.insert("A", around, at=(500, 0), xscale=-1)
+    sheet.insert("B")
+    panels, said = sheet.read()
+    assert list(panels) == ["A", "A_mirrored"]
+    assert [area(p.outline) for p in panels.values()] == pytest.approx([L_AREA, L_AREA])
+    assert said == ["piece A: it is used again: read as A_mirrored"]
+
+
+def test_blocks_that_are_no_pieces_are_named(sheet):
+    sheet.insert(sheet.block("A", L_SHAPE).name)
+    sheet.line(sheet.block("B", grain=False), L_SHAPE, "side")
+    sheet.insert("B")
+    sheet.insert("C")
+    _, said = sheet.read()
+    assert said == [
+        "block B has no outline on layer 1: not read (its layers: side)",
+        "block C is put on the sheet, but the file does not hold it: not read",
+    ]
+
+
+def test_blocks_are_pieces_where_the_sheet_puts_none_of_them(sheet):
+    """An exporter that puts blocks of other names than it writes."""
+    sheet.block("A", L_SHAPE, texts=("PIECE: Wange", "QTY: 1,1"))
+    sheet.insert("-M")
+    panels, said = sheet.read()
+    assert list(panels) == ["Wange", "Wange_mirrored"]
+    assert said[0] == "block -M is put on the sheet, but the file does not hold it: not read"
+
+
+def test_a_block_that_is_put_nowhere_is_named(sheet):
+    sheet.insert(sheet.block("A", L_SHAPE).name)
+    sheet.block("B", L_SHAPE)
+    panels, said = sheet.read()
+    assert list(panels) == ["A"]
+    assert said == ["block B has an outline, but is put nowhere on the sheet: not read"]

@@ -1,9 +1,11 @@
 """Lines of a piece as exporters draw them, each with a right value to compare with."""
 
+import itertools
 import tracemalloc
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -44,15 +46,77 @@ def test_other_closed_lines_are_no_sew_line(sheet, inner):
     assert said == []
 
 
+def test_sew_line_drawn_edge_by_edge_among_other_lines(sheet):
+    """Some exporters put the sewn edges on layer 8, where other lines begin at their corners."""
+    block = sheet.block("A", [(0, 0), (400, 0), (400, 300), (0, 300)])
+    ring = [(10, 10), (390, 10), (390, 290), (10, 290), (10, 10)]
+    for a, b in itertools.pairwise(ring):
+        sheet.line(block, [a, b], "8", closed=False)
+    sheet.line(block, [(10, 10), (200, 150)], "8", closed=False)
+    sheet.line(block, [(10, 150), (390, 150)], "8", closed=False)
+    sheet.insert("A")
+    panels, said = sheet.read()
+    assert area(panels["A"].outline) == pytest.approx(380 * 280)
+    assert len(panels["A"].corners) == 4
+    assert len(panels["A"].internal_lines) == 2
+    assert said == [
+        "piece A: nothing on layer 14: the line on layer 8 that runs parallel inside the outline "
+        "is taken for the sew line"
+    ]
+
+
 def test_hole_is_a_cut_out(sheet):
     block = sheet.block("A", L_SHAPE)
     block.add_circle((60, 60), 20, dxfattribs={"layer": "1"})
     sheet.insert("A")
     panels, said = sheet.read()
     assert area(panels["A"].outline) == pytest.approx(L_AREA)
-    assert said == [
-        "piece A: 1 closed line inside the outline is a cut-out and is ignored (layer 1)"
-    ]
+    (hole,) = panels["A"].holes
+    assert area(hole) == pytest.approx(np.pi * 20**2, rel=1e-3)
+    assert 1e6 * panels["A"].area == pytest.approx(L_AREA - np.pi * 20**2, rel=1e-3)
+    assert said == []
+
+
+@pytest.mark.parametrize("layer", ["1", "11"])
+def test_cut_outs_on_either_layer_go_with_their_piece(sheet, layer):
+    """Mirrored, turned, drawn twice, side by side: the hole keeps its place in the panel."""
+    block = sheet.block("A", L_SHAPE, texts=("Quantity: 1,1",))
+    sheet.line(block, [(40, 40), (80, 40), (80, 70)], layer)
+    sheet.line(block, [(40, 40), (80, 40), (80, 70)], "11")
+    sheet.insert("A", rotation=90)
+    panels, _ = sheet.read()
+    assert list(panels) == ["A", "A_mirrored"]
+    for panel in panels.values():
+        (hole,) = panel.holes
+        assert area(hole) == pytest.approx(0.5 * 40 * 30)
+        assert shapely.Polygon(panel.outline).contains(shapely.Polygon(hole))
+
+
+def test_half_a_cut_out_is_unfolded_with_its_piece(sheet):
+    block = sheet.block("A")
+    sheet.line(block, [(0, 0), (200, 0), (200, 150), (0, 150)], closed=False)
+    sheet.line(block, [(0, 0), (0, 150)], "6", closed=False)
+    sheet.line(block, [(0, 50), (30, 50), (30, 90), (0, 90)], "11", closed=False)
+    sheet.insert("A")
+    panels, said = sheet.read()
+    (hole,) = panels["A"].holes
+    assert area(hole) == pytest.approx(60 * 40)
+    assert said == []
+
+
+@pytest.mark.parametrize(
+    ("points", "closed", "message"),
+    [
+        ([(150, 80), (150, 150), (90, 80)], True, "a cut-out that crosses an outline"),
+        ([(40, 40), (80, 40), (80, 70)], False, "an open outline"),
+        ([(40, 40), (80, 70), (80, 40), (40, 70)], True, "crosses itself"),
+    ],
+)
+def test_cut_outs_that_cannot_be_cut(sheet, points, closed, message):
+    sheet.line(sheet.block("A", L_SHAPE), points, "11", closed=closed)
+    sheet.insert("A")
+    with pytest.raises(InputError, match=message):
+        sheet.read()
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,7 @@ def cover(name="LH bolster"):
         internal_lines=MappingProxyType(
             {"tie-down": np.array([[0.02, 0.1], [0.1, 0.12], [0.18, 0.1]])}
         ),
+        holes=(np.array([[0.05, 0.05], [0.08, 0.05], [0.08, 0.07]]),),
     )
 
 
@@ -45,6 +46,8 @@ def assert_same(a, b):
     for name in ("outline", "cut_outline", "grain"):
         assert np.abs(getattr(a, name) - getattr(b, name)).max() < 1e-12, name
     assert a.corners.tolist() == b.corners.tolist()
+    assert len(a.holes) == len(b.holes)
+    assert all(np.abs(x - y).max() < 1e-12 for x, y in zip(a.holes, b.holes, strict=True))
     assert sorted(a.internal_lines) == sorted(b.internal_lines)
     for name, points in a.internal_lines.items():
         assert np.abs(points - b.internal_lines[name]).max() < 1e-12

@@ -5,9 +5,12 @@ from __future__ import annotations
 import io
 import json
 import random
+import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +24,7 @@ from seatlook.io.lsdyna.d3plot.reader import read_d3plot
 from seatlook.io.lsdyna.shells import read_shells
 from seatlook.io.material import materials_dir, read_foam_material, read_material
 from seatlook.io.panorama import read_panorama
-from seatlook.io.pattern.dxf import read_dxf
+from seatlook.io.pattern.dxf import Reading, read_dxf, report_dxf
 from seatlook.io.pattern.seams import read_seams
 from seatlook.io.scene.read import load_scene
 from seatlook.io.surface.design import read_surface
@@ -29,7 +32,7 @@ from seatlook.io.surface.foam import read_foam
 from seatlook.io.sweep import read_sweep
 from seatlook.io.texture_maps import read_texture_maps
 from seatlook.jury.votes import merge_votes
-from support.fuzz import mutate
+from support.fuzz import mutate, structure
 from support.io_samples import box, solution
 from support.scene_files import write_two_panels
 
@@ -46,21 +49,60 @@ class Format:
     file : name of the file, in a folder that ``prepare`` fills with what it names
     read : path -> anything; only InputError may come out
     seeds : whole files and past holes
-    modules : of seatlook that read it, whose lines are counted
+    reader : which of ``READERS`` reads it
+    ways : the same with the options that users have, chosen by the bytes of the file
     """
 
     file: str
     read: Callable[[Path], object]
     seeds: Callable[[Path], list[bytes]]
     damage: Damage
+    reader: str
+    ways: Callable[[Path], object] | None = None
+
+
+@dataclass(frozen=True)
+class Reader:
+    """What reads some formats.
+
+    Parameters
+    ----------
+    modules : of seatlook, whose lines are counted; a name that ends in / is a whole folder
+    entries : names of the functions to begin with
+    """
+
     modules: tuple[str, ...]
+    entries: tuple[str, ...]
 
 
 FOAM = read_foam_material("foam-seat")
 
 
+_AXES: tuple[dict[str, Any], ...] = (
+    {"unit": "m", "up": "z"}, {"unit": "m", "up": "y"}, {}, {"unit": "inch"}
+)  # fmt: skip
+
+
 def _foam(path: Path) -> object:
-    return read_foam(path, material=FOAM, unit="m", up="z")
+    return read_foam(path, material=FOAM, **_AXES[0])
+
+
+def _foam_ways(path: Path) -> object:
+    return read_foam(path, material=FOAM, **_AXES[_number(path) % 6 % len(_AXES)])
+
+
+def _number(path: Path) -> int:
+    return zlib.crc32(path.read_bytes())
+
+
+def _design(path: Path) -> object:
+    return read_surface(path, **_AXES[0])
+
+
+def _design_ways(path: Path) -> object:
+    number = _number(path)
+    ungrouped = (None, None, "rest")[number // 8 % 3]
+    return read_surface(path, ungrouped=ungrouped, **_AXES[number % 6 % len(_AXES)])
 
 
 def _mesh(kind: str) -> Callable[[Path], list[bytes]]:
@@ -70,7 +112,9 @@ def _mesh(kind: str) -> Callable[[Path], list[bytes]]:
         vertices, faces = box()
         content = trimesh.Trimesh(vertices, faces, process=False).export(file_type=kind)
         whole = content.encode() if isinstance(content, str) else content
-        return [b"g A\n" + whole] if kind == "obj" else [whole]
+        if kind == "obj":
+            return [b"g A\n" + whole, *_files("corpus/design_obj/*")(folder)]
+        return [whole]
 
     return seeds
 
@@ -87,7 +131,11 @@ def _texts(*texts: str) -> Callable[[Path], list[bytes]]:
 
 
 def _scene(folder: Path) -> list[bytes]:
-    return [write_two_panels(folder).read_bytes()]
+    scene = write_two_panels(folder)
+    look = (DATA / "corpus/material/lab.toml").read_bytes()
+    (folder / "look.toml").write_bytes(look)
+    (folder / "design.obj").write_text("g LEFT\n" + (folder / "foam.obj").read_text())
+    return [scene.read_bytes(), *_files("corpus/scene/*")(folder)]
 
 
 def _set(path: Path) -> object:
@@ -108,15 +156,32 @@ def _sets(folder: Path) -> list[bytes]:
 
 def _seams(folder: Path) -> list[bytes]:
     write_two_panels(folder)
-    return [(folder / "seams.toml").read_bytes()]
+    return [(folder / "seams.toml").read_bytes(), *_files("corpus/seams/*")(folder)]
 
 
 def _read_seams(path: Path) -> object:
     return read_seams(path, _panels(path.parent / "pattern.dxf"))
 
 
+def _seams_ways(path: Path) -> object:
+    allowance = (0.0, 0.004)[_number(path) % 2]
+    return read_seams(path, _panels(path.parent / "pattern.dxf"), allowance)
+
+
 def _panels(path: Path, known: dict[Path, object] = {}) -> object:  # noqa: B006 -- read once
     return known.setdefault(path, known.get(path) or read_dxf(path))
+
+
+def _curves(folder: Path) -> list[bytes]:
+    plain = b"[curve.a]\npoints_mm = [\n[1, 2, 3],\n[4, 5, 6.5],\n]\n"
+    return [plain, *_files("corpus/curves/*")(folder)]
+
+
+def _materials(folder: Path) -> list[bytes]:
+    (folder / "maps").mkdir()
+    (folder / "maps/a_Color.png").write_bytes(_picture("PNG")(folder)[0])
+    own = [p.read_bytes() for p in sorted(materials_dir().glob("[bs]*.toml"))]
+    return own + _files("corpus/material/*")(folder)
 
 
 def _sweep(folder: Path) -> list[bytes]:
@@ -124,7 +189,7 @@ def _sweep(folder: Path) -> list[bytes]:
     return [
         b'schema = 1\nscene = "scene.toml"\n[axis]\n"mesh.seed" = [0, 1]\n[draw]\nrigs = ["sun"]\n'
         b'[irregularity]\ndraws = 4\n[[irregularity.input]]\nname = "a"\nkind = "foam_mm"\n'
-        b'spread = 1.0\n[[variant]]\nname = "b"\nset = ["hem=true"]\n'
+        b'spread = 1.0\n[[variant]]\nname = "b"\nset = ["hem=true"]\n',
     ]
 
 
@@ -158,8 +223,21 @@ def _shapes(folder: Path) -> list[bytes]:
 
 def _dxf(folder: Path) -> list[bytes]:
     write_two_panels(folder)
-    small = [f for f in sorted((DATA / "patterns").glob("*.dxf")) if f.stat().st_size < 60_000]
-    return [(folder / "pattern.dxf").read_bytes(), *(f.read_bytes() for f in small)]
+    return [
+        (folder / "pattern.dxf").read_bytes(), *_files("patterns/*.dxf", "corpus/dxf/*")(folder)
+    ]  # fmt: skip
+
+
+_READINGS: tuple[Reading, ...] = (
+    {}, {"units": "metric", "encoding": "gb18030"}, {"allowance": 0.005, "grain_deg": 30.0},
+    {"layers": {"8": "SEW", "2": "NOTCH"}, "size": "m"},
+)  # fmt: skip
+
+
+def _dxf_ways(path: Path) -> object:
+    options = _READINGS[_number(path) % 8 % 5 % 4]
+    read_dxf(path, **options)
+    return report_dxf(path, **options).lines()
 
 
 def _d3plot(folder: Path) -> list[bytes]:
@@ -174,17 +252,31 @@ def _d3plot(folder: Path) -> list[bytes]:
     variants = ({}, {"word": "<i8"}, {"solids": 2, "beams": 1}, {"names": {11: "cover"}})
     made = [d3plot(nodes, shells, states, **options) for options in variants]
     made.append(d3plot(nodes, shells, states, deletion=np.ones(count)))
-    return made + _files("lsdyna/d3plot/*")(folder)
+    return made + _files("lsdyna/d3plot/*", "corpus/d3plot/*")(folder)
 
 
-def _read_states(path: Path) -> object:
-    result = read_d3plot(path, thickness=0.001)
+_PARTS = (None, None, [1], ["cover"], ["cover", 12], ["tool"])
+_UNITS = ("mm", "mm", "m", "cm", "inch", "foot")
+
+
+def _states(read: Callable[..., Any], path: Path, **options: Any) -> object:
+    result = read(path, **({"thickness": 0.001} | options))
     return [result.read(k) for k in range(len(result))]
 
 
-def _deck(path: Path) -> object:
-    result = read_shells(path, thickness=0.001)
-    return [result.read(k) for k in range(len(result))]
+def _state_options(path: Path) -> dict[str, Any]:
+    number = _number(path)
+    return {
+        "thickness": (0.001, None)[number % 2],
+        "parts": _PARTS[number % len(_PARTS)],
+        "length_unit": _UNITS[number // 8 % len(_UNITS)],
+    }
+
+
+def _deck_ways(path: Path) -> object:
+    (path.parent / "body.inc").write_bytes((DATA / "corpus/deck/body.inc").read_bytes())
+    reference = path.parent / "body.inc" if _number(path) % 7 == 0 else None
+    return _states(read_shells, path, reference=reference, **_state_options(path))
 
 
 def _picture(kind: str, **options: object) -> Callable[[Path], list[bytes]]:
@@ -195,6 +287,7 @@ def _picture(kind: str, **options: object) -> Callable[[Path], list[bytes]]:
         whole = Image.fromarray(ramp)
         pictures = [whole, whole.convert("L"), whole.convert("P"), whole.convert("RGBA")]
         pictures.append(Image.fromarray(ramp[..., 0].astype(np.uint16) * 257))
+        pictures += [whole.convert("1"), Image.fromarray(ramp[..., 0].astype(np.float32))]
         made = []
         for picture in pictures:
             out = io.BytesIO()
@@ -219,14 +312,19 @@ def _folder(path: Path) -> object:
     for old in folder.glob("*"):
         old.unlink()
     folder.mkdir(exist_ok=True)
-    picture = _picture("PNG")(folder)
+    picture = [*_picture("PNG")(folder), *_exr(folder)]
     for number, name in enumerate(names):
         if name.strip("/. ") and "/" not in name and len(name.encode()) < 200:
             (folder / name).write_bytes(picture[number % len(picture)])
     return read_texture_maps(folder, width=0.1)
 
 
-_NAMES = "a_Color.png\na_Roughness.jpg\na_Metalness.tif\na_NormalGL.png\na_NormalDX.png\na_arm.png"
+_NAMES = (
+    "a_Color.png\na_Roughness.jpg\na_Metalness.tif\na_NormalGL.png\na_NormalDX.png\na_arm.png",
+    "a_Color.exr",
+    "a_Color.png\na_Roughness.png\nb_Color.png",
+    "a_NormalDX.png\na_arm.png",
+)
 _HDR = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n"
 
 
@@ -238,56 +336,81 @@ def _hdr(folder: Path) -> list[bytes]:
 
 
 def _exr(folder: Path) -> list[bytes]:
+    import OpenEXR
+
     write_exr(np.ones((8, 16, 3), np.float32), folder / "seed.exr")
-    return [(folder / "seed.exr").read_bytes()]
+    made = [(folder / "seed.exr").read_bytes()]
+    halves = np.linspace(-0.1, 2.0, 128, dtype=np.float16).reshape(8, 16)
+    for channels in ({"Y": halves}, {"Z": halves}, {"A": halves, "B": halves}):
+        kinds = {"compression": OpenEXR.ZIPS_COMPRESSION, "type": OpenEXR.scanlineimage}
+        OpenEXR.File(kinds, channels).write(str(folder / "seed.exr"))
+        made.append((folder / "seed.exr").read_bytes())
+    return made
 
 
-IO, PATTERN, LSDYNA = "io/", "io/pattern/", "io/lsdyna/"
-TOML = ("io/toml", "io/schema")
 FORMATS: dict[str, Format] = {
-    "scene": Format("scene.toml", load_scene, _scene, mutate.text, ("io/scene/", *TOML)),
-    "set": Format("word.txt", _set, _sets, mutate.text, ("io/scene/changes",)),
-    "seams": Format("s.toml", _read_seams, _seams, mutate.text, ("io/pattern/seams",)),
+    "scene": Format("scene.toml", load_scene, _scene, structure.toml, "scene"),
+    "set": Format("word.txt", _set, _sets, mutate.text, "scene"),
+    "seams": Format("s.toml", _read_seams, _seams, structure.toml, "seams", _seams_ways),
     "curves": Format(
-        "c.toml", read_curves, _texts("[curve.a]\npoints_mm = [\n[1, 2, 3],\n[4, 5, 6.5],\n]\n"),
-        mutate.text, ("io/curves",),
+        "c.toml", read_curves, _curves, structure.toml, "curves"
     ),
-    "material": Format(
-        "m.toml", read_material,
-        lambda f: [p.read_bytes() for p in sorted(materials_dir().glob("[blps]*.toml"))],
-        mutate.text, ("io/material", "io/colour"),
-    ),
+    "material": Format("m.toml", read_material, _materials, structure.toml, "material"),
     "foam material": Format(
         "f.toml", read_foam_material,
         lambda f: [(materials_dir() / "foam-seat.toml").read_bytes()],
-        mutate.text, ("io/material",),
+        structure.toml, "material",
     ),
-    "sweep": Format("w.toml", read_sweep, _sweep, mutate.text, ("io/sweep",)),
-    "votes": Format("v.json", _read_votes, _votes, mutate.tree, ("jury/votes",)),
-    "result": Format("r.npz", read_result, _result, mutate.npz, ("io/export/result", "io/npz")),
-    "shapes": Format("p.npz", read_shapes, _shapes, mutate.npz, ("io/export/film", "io/npz")),
-    "foam OBJ": Format("a.obj", _foam, _mesh("obj"), mutate.text, ("io/surface/",)),
-    "foam STL": Format("a.stl", _foam, _mesh("stl"), mutate.binary, ("io/surface/",)),
-    "foam PLY": Format("a.ply", _foam, _mesh("ply"), mutate.binary, ("io/surface/",)),
-    "foam GLB": Format("a.glb", _foam, _mesh("glb"), mutate.glb, ("io/surface/",)),
-    "design OBJ": Format(
-        "d.obj", lambda p: read_surface(p, unit="m", up="z"), _mesh("obj"), mutate.text,
-        ("io/surface/design",),
+    "sweep": Format("w.toml", read_sweep, _sweep, structure.toml, "sweep"),
+    "votes": Format("v.json", _read_votes, _votes, mutate.tree, "votes"),
+    "result": Format("r.npz", read_result, _result, mutate.npz, "result"),
+    "shapes": Format("p.npz", read_shapes, _shapes, mutate.npz, "result"),
+    "foam OBJ": Format("a.obj", _foam, _mesh("obj"), mutate.text, "surface", _foam_ways),
+    "foam STL": Format("a.stl", _foam, _mesh("stl"), mutate.binary, "surface", _foam_ways),
+    "foam PLY": Format("a.ply", _foam, _mesh("ply"), mutate.binary, "surface", _foam_ways),
+    "foam GLB": Format("a.glb", _foam, _mesh("glb"), mutate.glb, "surface", _foam_ways),
+    "design OBJ": Format("d.obj", _design, _mesh("obj"), mutate.text, "surface", _design_ways),
+    "design GLB": Format("d.glb", _design, _mesh("glb"), mutate.glb, "surface", _design_ways),
+    "DXF": Format("a.dxf", read_dxf, _dxf, structure.dxf, "DXF", _dxf_ways),
+    "d3plot": Format(
+        "d3plot", partial(_states, read_d3plot), _d3plot, structure.d3plot, "d3plot",
+        lambda path: _states(read_d3plot, path, **_state_options(path)),
     ),
-    "design GLB": Format(
-        "d.glb", lambda p: read_surface(p, unit="m", up="z"), _mesh("glb"), mutate.glb,
-        ("io/surface/",),
+    "deck": Format(
+        "a.k", partial(_states, read_shells), _files("lsdyna/k/*.k", "corpus/deck/*"),
+        structure.deck, "deck", _deck_ways,
     ),
-    "DXF": Format("a.dxf", read_dxf, _dxf, mutate.text, (PATTERN,)),
-    "d3plot": Format("d3plot", _read_states, _d3plot, mutate.binary, (f"{LSDYNA}d3plot/",)),
-    "deck": Format("a.k", _deck, _files("lsdyna/k/*.k"), mutate.text, (f"{LSDYNA}deck/",)),
-    "JPEG": Format("a_Color.jpg", _maps, _picture("JPEG"), mutate.binary, ("io/texture_maps",)),
+    "JPEG": Format("a_Color.jpg", _maps, _picture("JPEG"), structure.jpeg, "texture maps"),
     "TIFF": Format(
-        "a_Color.tif", _maps, _picture("TIFF", compression="tiff_lzw"), mutate.binary,
-        ("io/texture_maps",),
+        "a_Color.tif", _maps, _picture("TIFF", compression="tiff_lzw"), structure.tiff,
+        "texture maps",
     ),
-    "PNG": Format("a_Color.png", _maps, _picture("PNG"), mutate.png, ("io/texture_maps",)),
-    "texture folder": Format("n.txt", _folder, _texts(_NAMES), mutate.text, ("io/texture_maps",)),
-    "HDR": Format("a.hdr", read_panorama, _hdr, mutate.binary, ("io/panorama",)),
-    "EXR": Format("a.exr", read_panorama, _exr, mutate.binary, ("exr", "io/panorama")),
+    "PNG": Format("a_Color.png", _maps, _picture("PNG"), mutate.png, "texture maps"),
+    "texture folder": Format("n.txt", _folder, _texts(*_NAMES), mutate.text, "texture maps"),
+    "HDR": Format("a.hdr", read_panorama, _hdr, mutate.binary, "panorama"),
+    "EXR": Format("a.exr", read_panorama, _exr, structure.exr, "panorama"),
+}  # fmt: skip
+
+TOML = ("io/toml", "io/schema")
+READERS: dict[str, Reader] = {
+    "scene": Reader(("io/scene/", *TOML), ("load_scene",)),
+    "seams": Reader(("io/pattern/seams", "io/pattern/allowance"), ("read_seams",)),
+    "curves": Reader(("io/curves",), ("read_curves",)),
+    "material": Reader(("io/material", "io/colour"), ("read_material", "read_foam_material")),
+    "sweep": Reader(("io/sweep",), ("read_sweep",)),
+    "votes": Reader(("jury/votes",), ("merge_votes",)),
+    "result": Reader(
+        ("io/export/result", "io/export/film", "io/npz"), ("read_result", "read_shapes")
+    ),
+    "surface": Reader(("io/surface/",), ("read_foam", "read_surface")),
+    "DXF": Reader(
+        ("io/pattern/dxf", "io/pattern/flat", "io/pattern/mirror", "io/pattern/report",
+         "io/pattern/units", "io/pattern/drawing/", "io/pattern/pieces/"), ("read_dxf",)
+    ),
+    "d3plot": Reader(
+        ("io/lsdyna/d3plot/", "io/lsdyna/element_tables"), ("read_d3plot",)
+    ),
+    "deck": Reader(("io/lsdyna/deck/", "io/lsdyna/element_tables"), ("read_keyword",)),
+    "texture maps": Reader(("io/texture_maps",), ("read_texture_maps",)),
+    "panorama": Reader(("io/panorama", "exr"), ("read_panorama", "read_exr")),
 }  # fmt: skip

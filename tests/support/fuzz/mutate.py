@@ -130,6 +130,12 @@ def tree(content: bytes, rng: random.Random) -> bytes:
         root = json.loads(content)
     except (ValueError, RecursionError):
         return text(content, rng)
+    change_tree(root, rng)
+    return json.dumps(root).encode()
+
+
+def change_tree(root, rng: random.Random) -> None:
+    """Replace, take out and move values in dictionaries and lists."""
     for _ in range(rng.randint(1, 3)):
         places = list(_places(root))
         if not places:
@@ -146,7 +152,6 @@ def tree(content: bytes, rng: random.Random) -> bytes:
             holder[key] = rng.choice(
                 (None, True, -1, 0.5, 1e300, 2**40, "", "x", [], {}, [[1]], "9" * 99, float("nan"))
             )
-    return json.dumps(root).encode()
 
 
 def _places(node):

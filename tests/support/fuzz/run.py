@@ -41,7 +41,7 @@ def fuzz(name: str, folder: Path, count: int, *, seed: int = 1) -> Outcome:
         is_whole = number < len(seeds)
         content = seeds[number] if is_whole else form.damage(rng.choice(seeds), rng)
         path.write_bytes(content)
-        _count(outcome, form.read, path, content)
+        _count(outcome, form.ways or form.read, path, content)
     if whole is not None:
         path.write_bytes(whole)
     return outcome

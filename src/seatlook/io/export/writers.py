@@ -21,6 +21,7 @@ WRITERS: dict[str, Callable[[Solution, Sequence[Field], Path], None]] = {
     ".glb": write_glb,
     # A dynain file has no place for indices; its reader computes them from the strains.
     ".k": lambda solution, fields, path: write_dynain(solution, path),
+    ".radioss.k": lambda solution, fields, path: write_dynain(solution, path, strain_columns=16),
     # Of shells from elsewhere, to be drawn and scored as a cover.
     ".npz": lambda solution, fields, path: write_result(solution, path),
 }
@@ -38,8 +39,8 @@ def export_cover(solution: Solution, fields: Sequence[Field], path: Path) -> Non
     InputError
         There is no such format, or the fields are of another cover.
     """
-    writer = WRITERS.get(path.suffix.lower())
-    if writer is None:
+    endings = [ending for ending in WRITERS if path.name.lower().endswith(ending)]
+    if not endings:
         expected = f"one of {', '.join(WRITERS)}"
         raise InputError.single("file", got=shown(path.suffix), expected=expected, file=path)
     count = len(solution.cover.faces)
@@ -48,4 +49,4 @@ def export_cover(solution: Solution, fields: Sequence[Field], path: Path) -> Non
             raise InputError.single(
                 f"field {field.name}", got=f"{len(field.values)} faces", expected=str(count)
             )
-    writer(solution, fields, path)
+    WRITERS[max(endings, key=len)](solution, fields, path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -18,7 +19,13 @@ _MOST = 99_999_999  # numbers are eight digits wide
 _NO_LETTER = re.compile("[\x00-\x1f\x7f-\x9f\ud800-\udfff]")
 
 
-def write_dynain(solution: Solution, path: Path, *, length_unit: str = "mm") -> None:
+def write_dynain(
+    solution: Solution,
+    path: Path,
+    *,
+    length_unit: str = "mm",
+    strain_columns: Literal[20, 16] = 20,
+) -> None:
     """Write nodes, shells with their thickness, and strains on both surfaces.
 
     One part per panel, numbered from 1 in the order of the panels and titled with its name, with a
@@ -26,6 +33,12 @@ def write_dynain(solution: Solution, path: Path, *, length_unit: str = "mm") -> 
     numbered as the faces, from 1, so their normals point to the visible side. Strains are
     logarithmic, in global axes, at T = -1 and T = +1; the strain through the thickness is not
     computed here and written as 0.
+
+    Parameters
+    ----------
+    strain_columns : width of a strain
+        LARGE=1 makes a field twice as long, says the manual of LS-DYNA: 20 columns. OpenRadioss
+        reads 16.
 
     Raises
     ------
@@ -44,7 +57,7 @@ def write_dynain(solution: Solution, path: Path, *, length_unit: str = "mm") -> 
     lines = [*_head(solution, length_unit), *_nodes(solution.positions * scale)]
     lines += _parts(solution, cover.thickness * scale)
     lines += _shells(solution, cover.thickness * scale)
-    lines += _strains(inner, outer)
+    lines += _strains(inner, outer, strain_columns)
     write_text(path, "\n".join([*lines, "*END", ""]))
 
 
@@ -89,14 +102,14 @@ def _shells(solution: Solution, thickness: FloatArray) -> Iterator[str]:
         yield f"{t:16.9e}" * 4
 
 
-def _strains(inner: FloatArray, outer: FloatArray) -> Iterator[str]:
+def _strains(inner: FloatArray, outer: FloatArray, w: int) -> Iterator[str]:
     """One entry per shell in the wide format: xx, yy, zz, xy, yz, zx and the level."""
     yield "*INITIAL_STRAIN_SHELL"
     for number, surfaces in enumerate(zip(inner.tolist(), outer.tolist(), strict=True), 1):
         yield f"{number:10d}{1:10d}{2:10d}{1:10d}"
         for level, (xx, yy, zz, xy, yz, zx) in zip((-1.0, 1.0), surfaces, strict=True):
-            yield f"{xx:16.8e}{yy:16.8e}{zz:16.8e}{xy:16.8e}{yz:16.8e}"
-            yield f"{zx:16.8e}{level:16.8e}"
+            yield f"{xx:{w}.8e}{yy:{w}.8e}{zz:{w}.8e}{xy:{w}.8e}{yz:{w}.8e}"
+            yield f"{zx:{w}.8e}{level:{w}.8e}"
 
 
 def _global(solution: Solution, green: FloatArray) -> FloatArray:

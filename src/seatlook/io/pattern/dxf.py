@@ -202,9 +202,9 @@ def _pieces(
 ) -> dict[str, Drawn]:
     """Return piece name -> its entities, in the order of the file."""
     pieces: dict[str, Drawn] = {}
-    uses = find_uses(drawing, titles, size)
+    uses = find_uses(drawing, titles, size, report.notes)
     for name, use in zip(unique_names(uses, report.notes), uses, strict=True):
-        drawn = read_entities(use.block, report.mm_per_unit, use.matrix, use.block.name)
+        drawn = read_entities(use.block, report.mm_per_unit, use.matrix, use.block.name, use.layer)
         parts = split(drawn)
         for part in parts:
             own = name if len(parts) == 1 else name_in(part) or f"{name}_{len(pieces) + 1}"

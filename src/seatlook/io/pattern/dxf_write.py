@@ -17,6 +17,7 @@ from seatlook.files import write_bytes
 from seatlook.io.pattern.drawing.layers import (
     BOUNDARY,
     CURVE,
+    CUT_OUT,
     GRAIN,
     INTERNAL,
     NOTCH,
@@ -37,7 +38,8 @@ def write_dxf(pattern: Pattern, path: Path, *, style: str = "") -> None:
     """Write the panels as an AAMA DXF (R12, millimetres, one size).
 
     Layer 1 holds the cut line, 14 the sew line where it differs, 2 the corners, 3 the other
-    vertices, 4 and 80 to 83 the notches, 7 the grain, 8 the internal lines with their names.
+    vertices, 4 and 80 to 83 the notches, 7 the grain, 8 the internal lines with their names, 11 the
+    cut-outs.
     Numbers keep all their digits. Seams are not part of the format: see ``write_seams``.
 
     Parameters
@@ -88,6 +90,8 @@ def _block(name: str, panel: Panel) -> Iterator[Tag]:
     yield from _polyline(cut, BOUNDARY, closed=True)
     if not np.array_equal(outline, cut):
         yield from _polyline(outline, SEW, closed=True)
+    for hole in panel.holes:
+        yield from _polyline(1e3 * hole, CUT_OUT, closed=True)
     corner = np.isin(np.arange(len(outline)), panel.corners)
     for layer, points in ((TURN, outline[corner]), (CURVE, outline[~corner])):
         for x, y in points:

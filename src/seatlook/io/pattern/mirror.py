@@ -54,6 +54,7 @@ def mirrored(panel: Panel) -> Panel:
         grain=np.array([-1.0, 1.0]) * panel.grain + 0.0,
         notches=notches,
         internal_lines=MappingProxyType({n: over(x) for n, x in panel.internal_lines.items()}),
+        holes=tuple(map(round_again, panel.holes)),
     )
 
 

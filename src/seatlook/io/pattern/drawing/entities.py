@@ -11,11 +11,12 @@ import ezdxf.path
 import numpy as np
 
 from seatlook.io.pattern.drawing.encoding import spelled_out
-from seatlook.io.pattern.drawing.layers import LINE_LAYERS, UNREAD, meaning
+from seatlook.io.pattern.drawing.layers import CURVE, LINE_LAYERS, UNREAD, meaning
 from seatlook.model import FloatArray
 
 _LINES = ("LINE", "POLYLINE", "LWPOLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
 _TEXTS = ("TEXT", "MTEXT", "ATTDEF", "ATTRIB")
+_SHORT = {"piece": "piece name", "qty": "quantity"}  # as some exporters write
 _CHORD_MM = 0.001  # by which a chord may leave its curve
 _CUBICS = 16  # in an arc
 _DEEPEST = 16  # blocks in blocks
@@ -55,7 +56,11 @@ class Drawn:
 
 
 def read_entities(
-    layout: Any, scale: float, matrix: FloatArray | None = None, name: str = ""
+    layout: Any,
+    scale: float,
+    matrix: FloatArray | None = None,
+    name: str = "",
+    layer_0: str = "0",
 ) -> Drawn:
     """Read the entities of a block.
 
@@ -64,9 +69,10 @@ def read_entities(
     scale : millimetres per unit of the file
     matrix : (4, 4) by which the block is placed; row vectors, None leaves it where it is
     name : of the block
+    layer_0 : the layer that its layer 0 stands for
     """
     drawn = Drawn()
-    for entity, at, layer in _placed(layout, matrix, drawn.left, "0", (name,)):
+    for entity, at, layer in _placed(layout, matrix, drawn.left, layer_0, (name,)):
         kind = entity.dxftype()
         if kind in _LINES:
             _add_line(drawn, entity, layer, scale, at)
@@ -89,13 +95,19 @@ def read_texts(layout: Any) -> dict[str, str]:
             for row in _text(entity).splitlines():
                 key, colon, value = row.partition(":")
                 if colon:
-                    texts[key.strip().casefold()] = value.strip()
+                    word = key.strip().casefold()
+                    texts[_SHORT.get(word, word)] = value.strip()
     return texts
 
 
 def has_line(layout: Any, layer: str) -> bool:
     """Whether a block has a line on a layer."""
     return any(e.dxftype() in _LINES and meaning(e.dxf.layer) == layer for e in layout)
+
+
+def line_layers(layout: Any) -> set[str]:
+    """Return the layers on which a block has lines."""
+    return {e.dxf.layer for e in layout if e.dxftype() in _LINES}
 
 
 def matrix_of(insert: Any) -> Iterator[FloatArray]:
@@ -130,6 +142,7 @@ def _add_line(
 ) -> None:
     if layer not in LINE_LAYERS:
         reason = UNREAD.get(layer, "a layer without a meaning")
+        reason = "a line among the curve points" if layer == CURVE else reason
         drawn.left[Left(entity.dxftype(), layer, reason)] += 1
         if layer in UNREAD:
             return

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
 
 from seatlook.io.pattern.drawing.entities import Left
 from seatlook.io.pattern.drawing.layers import BOUNDARY
-from seatlook.io.pattern.pieces.join import GAP_MM, Chain
-from seatlook.io.pattern.pieces.sewline import parallel_inside
+from seatlook.io.pattern.pieces.join import GAP_MM, MEETING_MM, Chain
+from seatlook.io.pattern.pieces.sewline import outer_ring, parallel_inside
 from seatlook.model import FloatArray, Notch
 
 
@@ -77,11 +77,27 @@ def take_sew_line(
     found = {layer: parallel_inside(outline, chains) for layer, chains in candidates.items()}
     lines = {layer: chain for layer, chain in found.items() if chain is not None}
     if not lines:
-        return None
+        return _taken_together(outline, candidates)
     layer = max(lines, key=lambda name: abs(lines[name].area))
     # Which line it is, by identity: chains hold arrays and do not compare.
     candidates[layer][:] = [chain for chain in candidates[layer] if chain is not lines[layer]]
     return layer, lines[layer]
+
+
+def _taken_together(
+    outline: FloatArray, candidates: Mapping[str, list[Chain]]
+) -> tuple[str, Chain] | None:
+    """Take a sew line that is drawn edge by edge, with other lines that end on it."""
+    for layer, chains in candidates.items():
+        ring = outer_ring([chain for chain in chains if not chain.closed])
+        if ring is None or parallel_inside(outline, [ring]) is None:
+            continue
+        edge = shapely.LinearRing(ring.points).buffer(MEETING_MM)
+        on = [edge.contains(shapely.LineString(c.points)) for c in chains]
+        ends = [c.points[[0, -1]] for c, is_on in zip(chains, on, strict=True) if is_on]
+        chains[:] = [c for c, is_on in zip(chains, on, strict=True) if not is_on]
+        return layer, replace(ring, joints=np.concatenate(ends))
+    return None
 
 
 def outermost(chains: Sequence[Chain], layer: str, left: Counter[Left]) -> list[Chain]:

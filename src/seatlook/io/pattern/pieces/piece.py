@@ -27,6 +27,7 @@ from seatlook.io.pattern.drawing.layers import (
 )
 from seatlook.io.pattern.pieces.boundary import outermost, sort_boundary, take_sew_line
 from seatlook.io.pattern.pieces.cuts import DEEPEST_SLIT, with_cuts
+from seatlook.io.pattern.pieces.holes import cut_outs
 from seatlook.io.pattern.pieces.join import MEETING_MM, Chain, join, join_outline
 from seatlook.io.pattern.pieces.outline import (
     closed_outline,
@@ -50,6 +51,7 @@ class Piece:
     boundary: list[Chain]
     sew: list[Chain]
     internal: list[Chain]
+    cut_outs: list[Chain]
     other: dict[str, list[Chain]]
     grain: list[FloatArray]
     marks: FloatArray
@@ -64,13 +66,11 @@ class Piece:
         """Unfold a half piece and join the lines of each layer."""
         lines = drawn.lines
         _refuse_nan(name, lines)
-        if lines[CUT_OUT]:
-            notes.append(f"piece {name}: cut-outs (layer 11) are ignored")
         marks = np.array([m.place for m in drawn.points if m.layer == TURN]).reshape(-1, 2)
         notches = [n for layer in NOTCH_LAYERS for n in _notches(drawn, layer)]
         axis = _axis(lines[MIRROR], lines[BOUNDARY])
         if axis is not None:
-            for layer in [n for n in lines if n not in (MIRROR, GRAIN, CUT_OUT)]:
+            for layer in [n for n in lines if n not in (MIRROR, GRAIN)]:
                 lines[layer] = unfold(lines[layer], axis)
             marks = np.vstack([marks, reflect(marks, axis)])
             notches += _mirrored(notches, axis)
@@ -84,6 +84,7 @@ class Piece:
             boundary=boundary,
             sew=sew,
             internal=join(lines[INTERNAL]),
+            cut_outs=join_outline(lines[CUT_OUT])[0],
             other={n: join(rows) for n, rows in lines.items() if n not in LINE_LAYERS},
             grain=lines[GRAIN],
             marks=marks,
@@ -100,20 +101,15 @@ class Piece:
         Raises
         ------
         InputError
-            When the outline is open, crosses itself, or is too small or too large.
+            When the outline is open, crosses itself or a cut-out, or is too small or too large.
         """
         sorted_out = sort_boundary(self.boundary, DEEPEST_SLIT * smallest_notch, self.left)
         self._find_sew_line(sorted_out.outline, sorted_out.inner)
-        if sorted_out.inner:
-            count = len(sorted_out.inner)
-            what = (
-                "line inside the outline is a cut-out and is"
-                if count == 1
-                else ("lines inside the outline are cut-outs and are")
-            )
-            self._note(f"{count} closed {what} ignored (layer 1)")
         cut, outline = self._outlines(sorted_out.outline, smallest_notch)
         _check_size(self.name, cut.points, self.notes)
+        holes = cut_outs(
+            self.name, outline.points, sorted_out.inner, self.cut_outs, smallest_notch, self.notes
+        )
         cuts = (*cut.notches, *outline.notches, *sorted_out.slits, *self._drawn_notches(cut))
         mm = 1e-3
         marks = np.vstack([self.marks, outline.joints])
@@ -126,6 +122,7 @@ class Piece:
             grain=self._grain(grain_deg),
             notches=with_cuts(self.notches, cuts),
             internal_lines=MappingProxyType(self._internal_lines()),
+            holes=tuple(mm * hole for hole in holes),
         )
 
     def _note(self, text: str) -> None:

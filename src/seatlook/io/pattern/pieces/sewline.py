@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from seatlook.io.pattern.pieces.join import Chain
+from seatlook.io.pattern.pieces.join import Chain, without_repeats
 from seatlook.model import FloatArray
 
 _WIDEST_MM = 35.0  # allowance
@@ -30,6 +30,17 @@ def parallel_inside(outline: FloatArray, chains: Sequence[Chain]) -> Chain | Non
         if chain.closed and len(chain.points) > 2 and _is_parallel(area, ring, chain.points)
     ]
     return max(inside, key=lambda chain: abs(chain.area)) if inside else None
+
+
+def outer_ring(chains: Sequence[Chain]) -> Chain | None:
+    """Return the line round all that lines enclose together; other lines may end on it."""
+    lines = [shapely.LineString(chain.points) for chain in chains if len(chain.points) > 1]
+    faces = shapely.get_parts(shapely.polygonize([shapely.union_all(lines)]))
+    if not len(faces):
+        return None
+    whole = max(shapely.get_parts(shapely.union_all(faces)), key=shapely.area)
+    ring = without_repeats(shapely.get_coordinates(whole.exterior)[:-1], closed=True)
+    return Chain(ring, closed=True, joints=np.zeros((0, 2)))
 
 
 def _is_parallel(area: shapely.Polygon, ring: shapely.LinearRing, points: FloatArray) -> bool:
