@@ -29,7 +29,7 @@ demo: $(VENV)/.gl
 	@echo "how visible its wrinkles are: $(BIN)/seatlook evaluate $(OUT)/scene.toml --out $(OUT) --resume"
 
 test: $(VENV)/.gl $(VENV)/.dev
-	$(PYTEST) -n auto --dist loadfile -m "not validate and not browser and not bench" $(TESTS)
+	$(PYTEST) -n auto --dist loadfile --no-loadscope-reorder -m "not validate and not browser and not bench" $(TESTS)
 
 validate: $(VENV)/.gl $(VENV)/.dev $(VENV)/.reference
 	$(PYTEST) -m validate --timeout 3600 tests

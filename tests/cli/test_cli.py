@@ -19,6 +19,8 @@ import pytest
 from seatlook.cli import app, run
 from seatlook.wrinkle import INDICES
 
+pytestmark = pytest.mark.first
+
 COMMANDS = [name for name in app if not name.startswith("-")]
 
 

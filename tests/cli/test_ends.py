@@ -12,6 +12,8 @@ import pytest
 from seatlook.cli import run
 from seatlook.errors import SolverError
 
+pytestmark = pytest.mark.first
+
 COMMAND = [sys.executable, "-m", "seatlook"]
 # Waits as long as a kernel would: signals are heeded when it returns.
 HELD = """

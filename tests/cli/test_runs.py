@@ -14,7 +14,7 @@ from seatlook.cli import run
 from seatlook.pbr.picture import RUN_KEY
 from support.scene_files import write_two_panels
 
-pytestmark = pytest.mark.render
+pytestmark = [pytest.mark.render, pytest.mark.first]
 
 
 @pytest.fixture
@@ -107,6 +107,7 @@ def test_what_check_passes_evaluate_accepts(scene, tmp_path, change, capsys):
         assert not out.exists()
 
 
+@pytest.mark.filterwarnings("ignore::seatlook.errors.InputWarning")
 def test_evaluate_and_demo_overwrite_nothing_of_the_users(scene, tmp_path, capsys):
     out = tmp_path / "out"
     assert evaluate(scene, out) == 0
@@ -115,7 +116,8 @@ def test_evaluate_and_demo_overwrite_nothing_of_the_users(scene, tmp_path, capsy
     assert "zones.csv, edited or not written by seatlook" in capsys.readouterr().err
     assert (out / "zones.csv").read_text() == "my own notes"
     assert evaluate(scene, out, "--force") == 0
-    words = ["demo", "--files-only", "--out", str(tmp_path / "demo"), "--quiet"]
+    out = str(tmp_path / "demo")
+    words = ["demo", "--shape", "headrest", "--files-only", "--out", out, "--quiet"]
     assert run(words) == 0
     text = (tmp_path / "demo/scene.toml").read_text()
     assert run(words) == 0

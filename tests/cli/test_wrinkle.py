@@ -17,6 +17,8 @@ from seatlook.cli import run
 from seatlook.wrinkle import INDICES
 from support.wrinkle_samples import shaped, wave
 
+pytestmark = pytest.mark.first
+
 DATA = Path(__file__).parents[1] / "data"
 STRIP, DECK = DATA / "bent_strip.d3plot", DATA / "bent_strip_dynain.k"
 MAPS = {*INDICES, "w_stretch-own", "w_compression-own"}

@@ -15,6 +15,8 @@ import pytest
 from seatlook.errors import NoOffscreenContext
 from seatlook.pbr import backend
 
+pytestmark = pytest.mark.first
+
 ASK = """
 import sys
 from seatlook.errors import SeatlookError

@@ -11,6 +11,8 @@ from seatlook.flattening import flatten
 from seatlook.mesh.closest import closest_places, distance_to_segments, pseudonormals
 from seatlook.seats import SHAPES, Cushion, demo_design, design_surface, foam_mesh, shaped
 
+pytestmark = pytest.mark.first
+
 ELEMENT = 0.014
 PANEL_COUNTS = {
     "cushion": 7, "horseshoe": 10, "backrest": 8, "headrest": 3, "box": 2, "saddle": 2,

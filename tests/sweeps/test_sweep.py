@@ -34,6 +34,8 @@ from support.sweep_runs import (
     wait_for,
 )
 
+pytestmark = pytest.mark.first
+
 
 @pytest.fixture(scope="module")
 def four(tmp_path_factory: pytest.TempPathFactory) -> tuple[tuple[Cell, ...], dict[str, bytes]]:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.render
+pytestmark = [pytest.mark.render, pytest.mark.first]
 TESTS = Path(__file__).parents[2]
 DRAW = """
 import hashlib, numpy as np
