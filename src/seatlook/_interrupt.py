@@ -22,6 +22,7 @@ def heed() -> None:
         # A shell has what it starts in the background ignore Ctrl-C.
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _interrupt)
+    sys.unraisablehook = _unraisable
 
 
 def ignore() -> None:
@@ -46,6 +47,12 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
     timer.daemon = True
     timer.start()
     raise KeyboardInterrupt
+
+
+def _unraisable(unraisable: sys.UnraisableHookArgs) -> None:
+    """Say nothing of an interrupt that code swallows, as a callback of C: it comes again."""
+    if not (asked() and unraisable.exc_type is KeyboardInterrupt):
+        sys.__unraisablehook__(unraisable)
 
 
 def _again(number: int) -> None:

@@ -76,6 +76,19 @@ def held(*args, **kwargs):
     time.sleep(50)
 io.load_scene = held
 """
+# From a callback of C, Python prints what it cannot raise.
+CALLBACK = """
+import ctypes
+from seatlook import _interrupt, io
+_interrupt._AGAIN = 0.5
+def wait():
+    print("held", flush=True)
+    time.sleep(50)
+def held(*args, **kwargs):
+    ctypes.CFUNCTYPE(None)(wait)()
+    time.sleep(50)
+io.load_scene = held
+"""
 IMPORT = """
 class Finder:
     def find_spec(self, name, *rest):
@@ -89,7 +102,11 @@ for name in [n for n in sys.modules if n.startswith("seatlook.cli")]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("where", [SLEEP, COMPILED, SWALLOWED], ids=["python", "compiled", "lost"])
+@pytest.mark.parametrize(
+    "where",
+    [SLEEP, COMPILED, SWALLOWED, CALLBACK],
+    ids=["python", "compiled", "lost", "callback"],
+)
 def test_a_signal_ends_with_130_and_one_line(where, number):
     assert ended(where, number) == (130, INTERRUPTED)
 

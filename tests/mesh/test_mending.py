@@ -218,6 +218,25 @@ def test_a_shell_is_thickened_downward():
         mended(*cushion(2), thicken=0.04)
 
 
+@pytest.mark.parametrize("width", [0.008, 0.02])
+def test_thin_welts_keep_all_their_vertices(width):
+    """A welt much thinner than the body: its walls would come out on each other's outside."""
+    x = np.linspace(0, 0.2, 101)
+    y = np.linspace(0, 0.01, 3)
+    ridge = 0.015 * np.exp(-(((x - 0.1) / (0.5 * width)) ** 4))
+    xx, yy = (a.ravel() for a in np.meshgrid(x, y))
+    vertices = np.column_stack([xx, yy, np.tile(ridge, len(y))])
+    i = np.arange(2)[:, None] * 101 + np.arange(100)
+    faces = np.concatenate(
+        [np.stack([i, i + 1, i + 102], -1), np.stack([i, i + 102, i + 101], -1)]
+    ).reshape(-1, 3)
+    skin = mended(vertices, faces, thicken=0.03)
+    assert is_clean(skin.vertices, skin.faces)
+    assert cKDTree(skin.vertices).query(vertices)[0].max() < 2e-5
+    assert "vertices lost" not in said(skin)
+    assert skin.vertices[:, 2].min() == pytest.approx(-0.03, abs=1e-3)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_raw_scan_becomes_a_foam(seed):
     """Holes, noise of 0.3 mm, specks, fins, faces turned and drawn twice; open below."""

@@ -26,6 +26,8 @@ def check(
 ) -> None:
     """Read a scene with all its files, mesh it, and say what would be solved; solve nothing.
 
+    Also says what is read of the pattern file, and what is not, with the reason.
+
     Draws the cover as it starts into check/assembly.png beside the scene: panels over foam, seams
     by number with their gaps, hooks and frames, and whatever is refused.
 
@@ -39,6 +41,7 @@ def check(
     drawing = _drawing(seat, scene.parent / "check" / "assembly.png")
     cover, pattern = seat.check(), seat.scene.pattern
     finest = min(resolutions(cover), key=lambda mesh: mesh.wavelength)
+    read = _pattern_lines(scene, changes)
     lines = start_lines(seat.scene, cover)
     sewn = {line.name: line for line in lines if line.kind == "seam"}
     eases = [seam_ease(pattern, seam) for seam in pattern.seams]
@@ -58,7 +61,7 @@ def check(
             ("wavelength_mm", 1e3 * finest.wavelength),
             ("wavelength_over_element_size", finest.per_wave),
             ("drawing", None if drawing is None else str(drawing)),
-            *([("ease", seams), ("held", held)] if json else ()),
+            *([("ease", seams), ("held", held), ("pattern", read)] if json else ()),
         ],
         json=json,
     )
@@ -66,6 +69,16 @@ def check(
         if rows and not json:
             table(tuple(rows[0]), [tuple(map(_short, row.values())) for row in rows], json=False)
     note(f"nothing wrong; to solve and draw it: seatlook evaluate {scene} --out FOLDER")
+
+
+def _pattern_lines(scene: Path, changes: tuple[str, ...]) -> list[str]:
+    """Say what is read of the pattern file, and what is not."""
+    from seatlook import io
+
+    report = io.report_pattern(scene, changes=changes)
+    lines = [] if report is None else report.lines()
+    note(*lines)
+    return lines
 
 
 def _drawing(seat: Seat, path: Path) -> Path | None:

@@ -111,7 +111,8 @@ class DesignSurface:
             got=got,
             expected="one connected piece without holes",
             hint="cut it along a line that is closed" if not loops else
-            "cut it along a line from one of its borders to another",
+            "cut it along a line from one of its borders to another; what should be no hole is "
+            "filled by: seatlook mend SURFACE --close --sheet",
         )  # fmt: skip
 
 

@@ -82,6 +82,9 @@ if TYPE_CHECKING:
     from seatlook.io.scene.read import (
         load_scene as load_scene,
     )
+    from seatlook.io.scene.read import (
+        report_pattern as report_pattern,
+    )
     from seatlook.io.surface.design import (
         GroupedMesh as GroupedMesh,
     )
@@ -139,6 +142,7 @@ _PUBLIC: dict[str, str] = {
     "read_shells": "seatlook.io.lsdyna.shells",
     "read_surface": "seatlook.io.surface.design",
     "report_dxf": "seatlook.io.pattern.dxf",
+    "report_pattern": "seatlook.io.scene.read",
     "write_animation": "seatlook.io.export.film",
     "write_curves": "seatlook.io.curves",
     "write_dxf": "seatlook.io.pattern.dxf_write",
@@ -177,6 +181,7 @@ __all__ = [
     "read_shells",
     "read_surface",
     "report_dxf",
+    "report_pattern",
     "write_animation",
     "write_curves",
     "write_dxf",

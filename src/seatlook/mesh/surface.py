@@ -65,8 +65,9 @@ def boundary_loops(faces: IntArray) -> list[IntArray]:
     single = half[~np.isin(half @ [n, 1], half @ [1, n])]
     if len(np.unique(single[:, 0])) != len(single):
         raise InputError.single(
-            "faces", got="boundary curves that touch in a vertex", expected="a manifold surface"
-        )
+            "faces", got="boundary curves that touch in a vertex", expected="a manifold surface",
+            hint="seatlook mend SURFACE --sheet takes out what is on it twice or hangs on it",
+        )  # fmt: skip
     following = dict(single.tolist())
     loops = []
     while following:

@@ -16,7 +16,8 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.files import reader
 from seatlook.io.material import material_path, read_foam_material, read_material
-from seatlook.io.pattern.dxf import SMALLEST_NOTCH
+from seatlook.io.pattern.dxf import SMALLEST_NOTCH, Reading, report_dxf
+from seatlook.io.pattern.report import PatternReport
 from seatlook.io.pattern.seams import read_pattern
 from seatlook.io.scene.changes import change
 from seatlook.io.scene.checks import (
@@ -75,6 +76,31 @@ def load_scene(path: Path | str, *, changes: Iterable[str] = ()) -> Scene:
     document = read_document(Path(path))
     change(document, changes)
     return _Reader(document, read_table(document, scene_keys()), SceneFiles(document)).scene()
+
+
+@reader("a scene")
+def report_pattern(path: Path | str, *, changes: Iterable[str] = ()) -> PatternReport | None:
+    """Return what is read of the pattern of a scene, None where that is no DXF file."""
+    document = read_document(Path(path))
+    change(document, changes)
+    row = read_table(document, scene_keys())
+    document.finish()
+    file = document.file.parent / row["pattern"]["file"]
+    return report_dxf(file, **_reading(row)) if file.suffix.lower() == ".dxf" else None
+
+
+def _reading(row: dict[str, Any]) -> Reading:
+    """How the scene wants its pattern file to be read."""
+    pattern, notch = row["pattern"], row["mesh"]["smallest_notch_mm"]
+    return Reading(
+        size=pattern["size"],
+        units=pattern["units"],
+        encoding=pattern["encoding"],
+        grain_deg=pattern["grain_deg"],
+        allowance=pattern["allowance_mm"],
+        layers={name: what for name, what in pattern["layers"].items() if what},
+        smallest_notch=SMALLEST_NOTCH if notch is None else notch,
+    )
 
 
 @dataclass(slots=True)
@@ -139,23 +165,13 @@ class _Reader:
         return parts
 
     def pattern(self) -> Pattern | None:
-        row, notch = self.row["pattern"], self.row["mesh"]["smallest_notch_mm"]
+        row = self.row["pattern"]
         path = self.files.find(("pattern", "file"), row["file"])
         seams = self.files.find(("pattern", "seams"), row["seams"])
         if path is None or seams is None:
             return None
         try:
-            pattern = read_pattern(
-                path,
-                seams,
-                size=row["size"],
-                units=row["units"],
-                encoding=row["encoding"],
-                grain_deg=row["grain_deg"],
-                allowance=row["allowance_mm"],
-                layers={name: what for name, what in row["layers"].items() if what},
-                smallest_notch=SMALLEST_NOTCH if notch is None else notch,
-            )
+            pattern = read_pattern(path, seams, **_reading(self.row))
         except InputError as error:
             self.document.note(("pattern",), error)
             return None
