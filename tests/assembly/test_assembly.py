@@ -7,7 +7,7 @@ import pytest
 
 from seatlook import model
 from seatlook.assembly import assemble
-from seatlook.errors import AssemblyError
+from seatlook.errors import AssemblyError, InputError
 from seatlook.solver.element.elastic import ElasticSheet
 from support import scenes
 
@@ -135,3 +135,13 @@ def test_panels_without_material_or_pose_are_all_named():
     with pytest.raises(AssemblyError) as caught:
         assemble(bare)
     assert [p.key for p in caught.value.problems] == ["panel.LEFT", "panel.RIGHT"]
+
+
+def test_a_panel_that_cannot_be_meshed_is_named():
+    scene = scenes.two_panels()
+    first = scene.pattern.panels[0]
+    thin = dataclasses.replace(first, outline=first.outline * [1.0, 0.02])
+    panels = (thin, *scene.pattern.panels[1:])
+    scene = dataclasses.replace(scene, pattern=dataclasses.replace(scene.pattern, panels=panels))
+    with pytest.raises(InputError, match=rf"panel\.{first.name}, (mesh angles|outline): got"):
+        assemble(scene)

@@ -111,8 +111,8 @@ def test_hooks_to_the_wire_of_the_other_side(edited):
     assert left.line == line_of(path, "wire = ")
     assert right.line == line_of(path, "wire = ", after=left.line)
     assert re.match(
-        r"'trench_right', 2\d\d mm from the line: \(.*\) mm goes to \(.*\) mm; 'trench_left' is "
-        r"\d\d mm away",
+        r"'trench_right', 2\d\d mm from line 'INSERT-BOLSTER_L': \(.*\) mm goes to \(.*\) mm; "
+        r"'trench_left' is \d\d mm away",
         left.got,
     )
 

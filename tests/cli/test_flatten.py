@@ -126,3 +126,14 @@ def test_flatten_writes_a_pattern_and_its_strains(demo_scene, tmp_path, capsys):
     pattern = io.read_pattern(tmp_path / "pattern.dxf", tmp_path / "seams.toml")
     assert len(pattern.seams) == 14
     assert "[placement.INSERT]" in (tmp_path / "placement.toml").read_text()
+
+
+def test_a_bare_panel_has_no_cover(form):
+    text = LINES.format(z=0) + "[panel.BASE]\npoint_mm = [200, 250, 4]\nbare = true\n"
+    (form / "lines.toml").write_text(text)
+    lines = str(form / "lines.toml")
+    command = ["flatten", str(form / "form.obj"), "--out", str(form / "bare")]
+    assert run([*command, "--seam-lines", lines]) == 0
+    pattern = io.read_pattern(form / "bare/pattern.dxf", form / "bare/seams.toml")
+    assert len(pattern.panels) == 1
+    assert pattern.seams == ()

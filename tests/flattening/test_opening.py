@@ -176,3 +176,47 @@ def test_all_panels_that_are_none_are_named_at_once():
     with pytest.raises(InputError) as caught:
         pair.patches()
     assert [problem.key for problem in caught.value.problems] == ["panel L", "panel R"]
+
+
+@pytest.mark.parametrize("aside", [0.0008, 0.004, -0.012])
+def test_a_ring_is_not_closed_beside_the_end_of_another_seam(aside):
+    """A seam of a millimetre could be neither sewn nor meshed."""
+    surface = box_cushion()
+    rims = {
+        name: surface.vertices[np.append(loop, loop[0])]
+        for name, part in (("top", 1), ("base", 2))
+        for loop in mesh.boundary_loops(surface.faces[surface.panel == part])
+    }
+    rim, low = rims["top"], rims["base"]
+    back = rim[:, 1].argmax()
+    end = rim[back] + [aside, 0.0, 0.0]
+    middle = np.array([aside, 0.0, surface.vertices[:, 2].max()])
+    across = np.stack([end * [1, -1, 1], middle, end])
+    whole = undivided(surface.vertices, surface.faces)
+    cut = quietly(cut_along, whole, {"top": rim, "base": low, "across": across})
+    result = quietly(flatten, cut)
+    assert min(seam.a for seam in result.seams) > 0.0149
+
+
+def test_a_bare_panel_is_left_out_and_its_border_is_free():
+    surface = box_cushion()
+    rims = {
+        name: surface.vertices[np.append(loop, loop[0])]
+        for name, part in (("top", 1), ("base", 2))
+        for loop in mesh.boundary_loops(surface.faces[surface.panel == part])
+    }
+    whole = undivided(surface.vertices, surface.faces)
+    below = {"BASE": np.array([0.0, 0.0, surface.vertices[:, 2].min()])}
+    cut = quietly(cut_along, whole, rims, bare=below)
+    assert len(cut.panel_names) == 2
+    assert len(mesh.boundary_loops(cut.faces)) == 1
+    result = quietly(flatten, cut)
+    assert sum(name.endswith(".free") for name in result.pattern.edges) == 1
+    everywhere = {**below, "TOP": middle_of(surface, 1), "BAND": middle_of(surface, 0)}
+    with pytest.raises(InputError, match="only bare ones: BASE, TOP, BAND, expected one to cover"):
+        quietly(cut_along, whole, rims, bare=everywhere)
+
+
+def middle_of(surface, panel):
+    faces = surface.faces[surface.panel == panel]
+    return surface.vertices[faces[len(faces) // 2]].mean(axis=0)

@@ -76,3 +76,33 @@ def test_a_cover_that_hangs_below_its_pillow_is_not_converged(tmp_path, capsys):
     assert "the cover does not touch the foam" in solution.reason
     assert solution.reason in said
     assert solution.figures["untouched"] == 1.0
+
+
+@pytest.mark.parametrize(("larger", "shares"), [(1.10, (0.3, 0.0)), (1.16, (0.8, 0.15))])
+def test_a_headrest_buried_in_balance_is_not_converged(tmp_path, capsys, larger, shares):
+    """Its foam is too large: all forces in balance, seams shut, the border tied."""
+    form = Headrest.sized(1.0)
+    foam = foam_mesh(form, element_size=0.014)
+    middle = foam.vertices.mean(axis=0)
+    io.write_obj(middle + larger * (foam.vertices - middle), foam.faces, tmp_path / "foam.obj")
+    write_panels(design_surface(form, element_size=0.014), tmp_path / "design.obj")
+    _, made = flatten_scene(
+        tmp_path / "design.obj", tmp_path / "foam.obj", tmp_path, element_size_mm=SIZE
+    )
+    text = made.scene.read_text()
+    made.scene.write_text(
+        text.replace("[mesh]", '[check]\nallow = ["curve inside", "start inside"]\n\n[mesh]', 1)
+    )
+    code, solution, said = solved(made.scene, capsys)
+    assert code == 3
+    assert solution.status == "not converged"
+    figures = solution.figures
+    assert figures["residual"] <= 1e-3
+    assert figures["seam_gap_max"] < 1e-4
+    assert figures["contact_compression_max"] < 0.6
+    assert figures["buried_10mm"] > shares[0]
+    assert figures["buried_20mm"] >= shares[1]
+    assert re.match(r"\d\d.* % of the cover lies more than 10 mm deep in the foam", solution.reason)
+    assert "frame" not in solution.reason
+    assert "seam" not in solution.reason
+    assert solution.reason in said

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -49,6 +50,17 @@ class _Rim:
     place: dict[int, int]  # outline vertex -> place in ``vertices``
 
 
+@contextmanager
+def _panel_named(name: str) -> Iterator[None]:
+    """Name the panel in what keeps it from being meshed; places are those of the pattern."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(
+            replace(problem, key=f"panel.{name}, {problem.key}") for problem in error.problems
+        ) from None
+
+
 class Builder:
     """Collects the panels' meshes and finds vertex lines in them."""
 
@@ -78,9 +90,10 @@ class Builder:
             steps += len(points) * [mesh.arc_length(span)[-1] / len(points)]
         inner = [mesh.resample(line, h) for line in lines.values()]
         holes = [_sampled_hole(hole, h, panel.name) for hole in panel.holes]
-        points, faces = mesh.triangulate(
-            np.concatenate(sampled), h, lines=inner, holes=holes, seed=seed
-        )
+        with _panel_named(panel.name):
+            points, faces = mesh.triangulate(
+                np.concatenate(sampled), h, lines=inner, holes=holes, seed=seed
+            )
         offset = sum(map(len, self._points))
         self._points.append(points)
         self._faces.append(faces + offset)

@@ -92,9 +92,10 @@ def read_design(
     form = DesignSurface(**io.read_surface(path, unit=unit, up=up, ungrouped="PANEL")._asdict())
     if seam_lines is None:
         return opened(form)
-    lines, names = io.read_seam_lines(seam_lines)
+    lines, panels, bare = io.read_seam_lines(seam_lines)
     try:
-        return named(cut_along(form, lines), names)
+        cut = cut_along(form, lines, bare={name: panels.pop(name) for name in bare})
+        return named(cut, panels)
     except InputError as error:
         raise InputError(
             problem if problem.file else replace(problem, file=seam_lines)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from seatlook.files import reader, write_text
-from seatlook.io.schema import Kind, Named, Table, place_mm, read_table
+from seatlook.io.schema import Flag, Kind, Named, Table, place_mm, read_table
 from seatlook.io.toml import Document, quoted, read_document
 from seatlook.model import FloatArray
 
@@ -17,7 +17,24 @@ _KEYS: dict[str, Kind] = {
     "curve": Named(Table({"points_mm": place_mm(3, many=True)}), required=True)
 }
 
-_PANELS: dict[str, Kind] = {"panel": Named(Table({"point_mm": place_mm(3)}))}
+_PANELS: dict[str, Kind] = {
+    "panel": Named(Table({"point_mm": place_mm(3), "bare": Flag(default=False)}))
+}
+
+
+class SeamLines(NamedTuple):
+    """Lines along which a surface is cut, and what the panels are.
+
+    Parameters
+    ----------
+    lines : name -> (k, 3) [m]
+    panels : name -> point (3,) [m] inside the panel
+    bare : those of the panels that are foam without cover
+    """
+
+    lines: dict[str, FloatArray]
+    panels: dict[str, FloatArray]
+    bare: tuple[str, ...]
 
 
 @reader("a file of curves")
@@ -40,13 +57,10 @@ def read_curves(path: Path) -> dict[str, FloatArray]:
 
 
 @reader("a file of curves")
-def read_seam_lines(path: Path) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
+def read_seam_lines(path: Path) -> SeamLines:
     """Read a curves file that may also name panels: ``[panel.NAME] point_mm = [x, y, z]``.
 
-    Returns
-    -------
-    lines : name -> (k, 3) [m]
-    panels : name -> point (3,) [m] inside the panel
+    With ``bare = true`` a panel is foam that no cover lies on.
 
     Raises
     ------
@@ -57,7 +71,12 @@ def read_seam_lines(path: Path) -> tuple[dict[str, FloatArray], dict[str, FloatA
     row = read_table(document, _KEYS | _PANELS)
     lines = _curves(document, row)
     document.finish()
-    return lines, {name: panel["point_mm"] for name, panel in row["panel"].items()}
+    panels = row["panel"]
+    return SeamLines(
+        lines,
+        {name: panel["point_mm"] for name, panel in panels.items()},
+        tuple(name for name, panel in panels.items() if panel["bare"]),
+    )
 
 
 def _curves(document: Document, row: dict[str, Any]) -> dict[str, FloatArray]:

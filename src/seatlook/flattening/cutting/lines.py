@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from seatlook.flattening.cutting.names import without
 from seatlook.flattening.cutting.opening import opened
 from seatlook.flattening.cutting.parts import parted
 from seatlook.flattening.surface import DesignSurface
@@ -15,7 +16,12 @@ from seatlook.model import FloatArray
 LINE_TOLERANCE = 0.002  # [m] between a seam line and the surface, the border, another line
 
 
-def cut_along(surface: DesignSurface, lines: Mapping[str, FloatArray]) -> DesignSurface:
+def cut_along(
+    surface: DesignSurface,
+    lines: Mapping[str, FloatArray],
+    *,
+    bare: Mapping[str, FloatArray] = MappingProxyType({}),
+) -> DesignSurface:
     """Cut a surface into panels along lines; where its panels met before does not matter.
 
     A panel is called after the panel of the surface given that most of it was; several of one name
@@ -27,6 +33,7 @@ def cut_along(surface: DesignSurface, lines: Mapping[str, FloatArray]) -> Design
     surface : DesignSurface
     lines : name -> (k, 3) [m]   closer than ``LINE_TOLERANCE`` to the surface; each ends on the
                                  border, on another line, or as a dart, or is closed
+    bare : name -> point (3,) [m] inside a panel that is left out
 
     Returns
     -------
@@ -48,6 +55,6 @@ def cut_along(surface: DesignSurface, lines: Mapping[str, FloatArray]) -> Design
         panel_names=surface.panel_names,
         seam_lines=MappingProxyType(drawing.edges),
     )
-    cut = opened(parted(drawn, rejoined=True))
+    cut = opened(without(parted(drawn, rejoined=True), bare))
     cut.patches()  # refuses panels that are no disk
     return cut

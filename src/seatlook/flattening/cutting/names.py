@@ -1,4 +1,4 @@
-"""Names for panels, by a point inside each."""
+"""Panels by a point inside each: what they are called, and which are none."""
 
 from __future__ import annotations
 
@@ -23,12 +23,50 @@ def named(surface: DesignSurface, points: Mapping[str, FloatArray]) -> DesignSur
     InputError
         A point off the surface, two in one panel, a name that another panel has.
     """
+    names = list(surface.panel_names)
+    for name, panel in _panels_at(surface, points).items():
+        names[panel] = name
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InputError(
+            Problem(key=f"panel.{name}", got="a name that two panels have", expected="another one")
+            for name in twice
+        )
+    return replace(surface, panel_names=tuple(names))
+
+
+def without(surface: DesignSurface, points: Mapping[str, FloatArray]) -> DesignSurface:
+    """Leave out the panels in which points (3,) [m] lie; their borders become free.
+
+    Raises
+    ------
+    InputError
+        A point off the surface, two in one panel, no panel that is left.
+    """
     if not points:
         return surface
+    left_out = list(_panels_at(surface, points).values())
+    rest = np.setdiff1d(np.arange(len(surface.panel_names)), left_out)
+    if not len(rest):
+        names = ", ".join(points)
+        raise InputError.single("panel", got=f"only bare ones: {names}", expected="one to cover")
+    covered = np.isin(surface.panel, rest)
+    return replace(
+        surface,
+        faces=surface.faces[covered],
+        panel=np.searchsorted(rest, surface.panel[covered]),
+        panel_names=tuple(surface.panel_names[k] for k in rest),
+    )
+
+
+def _panels_at(surface: DesignSurface, points: Mapping[str, FloatArray]) -> dict[str, int]:
+    """Name -> index of the panel in which the point of that name lies, each another one."""
+    if not points:
+        return {}
     places = np.array(list(points.values()))
     closest = closest_places(places, surface.vertices, surface.faces, reach=_REACH)
-    names, problems = list(surface.panel_names), []
     given: dict[int, str] = {}
+    problems = []
     for name, face in zip(points, closest.face.tolist(), strict=True):
         key = f"panel.{name}.point_mm"
         panel = -1 if face < 0 else int(surface.panel[face])
@@ -39,12 +77,7 @@ def named(surface: DesignSurface, points: Mapping[str, FloatArray]) -> DesignSur
             got = f"a point in the same panel as {given[panel]}"
             problems.append(Problem(key=key, got=got, expected="one name for a panel"))
         else:
-            given[panel] = names[panel] = name
-    twice = sorted({name for name in names if names.count(name) > 1})
-    problems += [
-        Problem(key=f"panel.{name}", got="a name that two panels have", expected="another one")
-        for name in twice
-    ]
+            given[panel] = name
     if problems:
         raise InputError(problems)
-    return replace(surface, panel_names=tuple(names))
+    return {name: panel for panel, name in given.items()}

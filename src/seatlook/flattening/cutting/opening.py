@@ -22,6 +22,7 @@ from seatlook.model import FloatArray, IntArray
 _FRONT, _SIDE, _TOP = 10.0, 1.0, 1.0
 # A ring that turns more than this when it lies flat would meet itself: it becomes two panels.
 _LARGEST_TURN = np.radians(300.0)
+_CLEAR = 0.015  # [m] of a border, from where seams meet on it to the end of a closing seam
 
 
 def opened(surface: DesignSurface) -> DesignSurface:
@@ -64,15 +65,37 @@ def _closing_lines(patch: Patch, borders: list[IntArray], surface: DesignSurface
     share = (patch.vertices - low) / (high - low).max()
     side = np.abs(patch.vertices[:, 0] - (low[0] + high[0]) / 2) / (high - low).max()
     seen = _FRONT * (share[:, 1].max() - share[:, 1]) + _SIDE * side + _TOP * share[:, 2]
-    first = _way(patch, borders, 1 + seen)
+    clear = [_clear_of_junctions(patch, loop, surface) for loop in borders]
+    first = _way(patch, clear, 1 + seen)
     corner = mesh.angles(patch.vertices, patch.faces)
     around = np.bincount(patch.faces.ravel(), corner.ravel(), minlength=len(patch.vertices))
-    joined = next(loop for loop in borders if first[-1] in loop)
-    turns = [float((np.pi - around[loop]).sum()) for loop in (borders[0], joined)]
+    joined = next(k for k, loop in enumerate(borders) if first[-1] in loop)
+    turns = [float((np.pi - around[borders[k]]).sum()) for k in (0, joined)]
     if abs(turns[0] - turns[1]) / 2 < _LARGEST_TURN:
         return [first]
     far = dijkstra(_roads(patch, np.ones(len(patch.vertices))), False, first, min_only=True)
-    return [first, _way(patch, [borders[0], joined], 1 + _FRONT * (1 - far / far.max()))]
+    return [first, _way(patch, [clear[0], clear[joined]], 1 + _FRONT * (1 - far / far.max()))]
+
+
+def _clear_of_junctions(patch: Patch, loop: IntArray, surface: DesignSurface) -> IntArray:
+    """Vertices of a border that are not beside a place where its neighbour changes.
+
+    A closing seam that ended there would leave a seam too short to be sewn, or meshed. Where
+    nothing is clear of such places the whole border counts.
+    """
+    ring = patch.source[loop].tolist()
+    half = surface.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist()
+    panel = dict(zip(map(tuple, half), np.repeat(surface.panel, 3).tolist(), strict=True))
+    beyond = [
+        (panel.get((b, a)), surface.seam_lines.get((min(a, b), max(a, b))))
+        for a, b in zip(ring, ring[1:] + ring[:1], strict=True)
+    ]
+    changes = [i for i in range(len(ring)) if beyond[i] != beyond[i - 1]]
+    arc = mesh.arc_length(patch.vertices[np.append(loop, loop[0])])
+    away = np.abs(arc[:-1, None] - arc[changes])
+    away = np.minimum(away, arc[-1] - away)
+    clear = loop[away.min(axis=1, initial=np.inf) >= _CLEAR]
+    return clear if len(clear) else loop
 
 
 def _way(patch: Patch, borders: list[IntArray], cost: FloatArray) -> IntArray:
