@@ -48,6 +48,26 @@ def test_faces_are_those_a_ray_meets(window, size):
     assert (ids != rays).sum() <= max(1, 0.004 * ids.size)
 
 
+@pytest.mark.parametrize("size", [(80, 45), (45, 80), (61, 7)])
+def test_parts_of_a_picture_are_the_picture(window, monkeypatch, size):
+    """Above a size the window draws one part after the other."""
+    from seatlook.pbr import _vtk
+
+    solution = sheet(bumps, steps=16)
+    camera = named_view("front_34", target=np.zeros(3), size=size, distance=0.5)
+    whole = window.faces(solution.positions, solution.cover.faces, camera, size)
+    monkeypatch.setattr(_vtk, "_LARGEST", 20)
+    seen, count = np.full(whole.shape, -9), 0
+    for part in _vtk.parts_of(size):
+        count += 1
+        assert (seen[part.lines, part.columns] == -9).all()
+        mesh = (solution.positions, solution.cover.faces)
+        seen[part.lines, part.columns] = window.faces(*mesh, camera, size, part)
+        assert max(part.width, part.height) <= 20
+    assert count >= 4
+    assert (seen != whole).sum() <= max(1, 0.004 * whole.size)
+
+
 def test_shader_that_does_not_compile_is_raised(capfd):
     from seatlook.pbr._vtk import FaceWindow
 

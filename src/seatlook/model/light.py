@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -217,6 +217,26 @@ class Rig:
                 got=f"{self.panorama.shape[:2]} pixels from {self.panorama.min():g}",
                 expected="at least 4 x 4 pixels, none below 0",
             )
+
+
+def turned(rig: Rig, azimuth_deg: float) -> Rig:
+    """Rig whose panorama is turned counter-clockwise, seen from above; its lamps stay.
+
+    Between columns of pixels light is shared in proportion: none is lost.
+
+    Examples
+    --------
+    >>> sky = np.zeros((4, 8, 3))
+    >>> sky[1, 0] = 1.0
+    >>> turned(Rig(name="sky", lights=(), panorama=sky), 90.0).panorama[1, :, 0].tolist()
+    [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    """
+    if rig.panorama is None:
+        return rig
+    steps = azimuth_deg / 360.0 * rig.panorama.shape[1]
+    whole = int(np.floor(steps))
+    low, high = (np.roll(rig.panorama, whole + k, axis=1) for k in (0, 1))
+    return replace(rig, panorama=low + (steps - whole) * (high - low))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

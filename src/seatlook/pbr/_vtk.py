@@ -10,6 +10,8 @@ import functools
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -44,11 +46,51 @@ FaceIds = npt.NDArray[np.int32]
 
 # A float32 holds every integer up to this one.
 MAX_FACES = 2**24 - 1
+# Samples along a side of the window: larger ones fail to open, or take gigabytes.
+_LARGEST = 2048
 
 _WRITE_FACE = """
 //VTK::Light::Impl
   gl_FragData[0] = vec4(float(gl_PrimitiveID + PrimitiveIDOffset + 1), 0.0, 0.0, 1.0);
 """
+
+
+class Part(NamedTuple):
+    """Rectangle of samples of a picture, from its top left."""
+
+    left: int
+    top: int
+    width: int
+    height: int
+
+    @property
+    def lines(self) -> slice:
+        """Its lines in the picture."""
+        return slice(self.top, self.top + self.height)
+
+    @property
+    def columns(self) -> slice:
+        """Its columns in the picture."""
+        return slice(self.left, self.left + self.width)
+
+
+def parts_of(size: tuple[int, int]) -> list[Part]:
+    """Rectangles of a picture of ``size`` that a window may have, line by line.
+
+    Examples
+    --------
+    >>> [(part.left, part.width) for part in parts_of((2560, 100))]
+    [(0, 1280), (1280, 1280)]
+    """
+    edges = []
+    for length in size:
+        count = -(-length // _LARGEST)
+        edges.append([length * k // count for k in range(count + 1)])
+    return [
+        Part(left, top, right - left, bottom - top)
+        for top, bottom in pairwise(edges[1])
+        for left, right in pairwise(edges[0])
+    ]
 
 
 class FaceWindow:
@@ -81,7 +123,12 @@ class FaceWindow:
         self._window.AddRenderer(self._renderer)
 
     def faces(
-        self, vertices: FloatArray, faces: IntArray, camera: Camera, size: tuple[int, int]
+        self,
+        vertices: FloatArray,
+        faces: IntArray,
+        camera: Camera,
+        size: tuple[int, int],
+        part: Part | None = None,
     ) -> FaceIds:
         """Return the number of the nearest face at every sample centre, -1 where there is none.
 
@@ -89,16 +136,18 @@ class FaceWindow:
         ----------
         vertices : (n, 3) float64 [m]; faces : (m, 3) int64
         size : (width, height) in samples; the camera's own size sets only the aspect
+        part : what to draw of it, all if None; see :func:`parts_of`
 
         Returns
         -------
         (height, width) int32, first row at the top
         """
         self._set_mesh(vertices, faces)
-        self._aim(camera, size)
+        part = part or Part(0, 0, *size)
+        self._aim(camera, size, part)
         with _errors_raised():
             self._window.Render()
-        picture = self._read(size)
+        picture = self._read((part.width, part.height))
         ids = np.empty(picture.shape[:2], dtype=np.int32)
         if not surface.face_numbers(picture, len(faces), ids):
             raise RenderError("the face shader did not run: the frame holds no face numbers")
@@ -132,14 +181,24 @@ class FaceWindow:
         self._mapper.SetInputData(data)
         self._mesh = (vertices, faces)
 
-    def _aim(self, camera: Camera, size: tuple[int, int]) -> None:
+    def _aim(self, camera: Camera, size: tuple[int, int], part: Part) -> None:
         eye = self._renderer.GetActiveCamera()
         eye.ParallelProjectionOff()
         eye.SetPosition(*camera.position)
         eye.SetFocalPoint(*camera.target)
         eye.SetViewUp(*camera.up)
-        eye.SetViewAngle(camera.vertical_fov_deg)
-        self._window.SetSize(*size)
+        half = np.tan(np.radians(camera.vertical_fov_deg) / 2) * part.height / size[1]
+        eye.SetViewAngle(
+            camera.vertical_fov_deg
+            if part.height == size[1]
+            else float(np.degrees(2 * np.arctan(half)))
+        )
+        # The middle of the picture lies so many half parts left of and below that of the part.
+        eye.SetWindowCenter(
+            (2 * part.left + part.width - size[0]) / part.width,
+            (size[1] - 2 * part.top - part.height) / part.height,
+        )
+        self._window.SetSize(part.width, part.height)
         self._renderer.ResetCameraClippingRange()
 
     def _read(self, size: tuple[int, int]) -> npt.NDArray[np.float32]:
@@ -149,7 +208,10 @@ class FaceWindow:
             raise RenderError(f"the GL library did not give a frame of {width} x {height} samples")
         buffer = texture.Download()
         picture = np.empty((height, width, 4), dtype=np.float32)
-        if not buffer.Download2D(VTK_FLOAT, picture, [width, height], 4, [0, 0]):
+        done = buffer.Download2D(VTK_FLOAT, picture, [width, height], 4, [0, 0])
+        # VTK keeps every buffer that it hands out as long as the window is open.
+        buffer.ReleaseMemory()
+        if not done:
             raise RenderError("the frame could not be read back from the GL library")
         return picture
 

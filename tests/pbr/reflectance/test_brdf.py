@@ -41,7 +41,7 @@ def test_white_furnace_bare(roughness, metalness):
 def test_white_furnace_with_nap(roughness):
     a = Appearance(albedo=WHITE, roughness=0.9, sheen=WHITE, sheen_roughness=roughness)
     got = [reflected(a, view(mu)).max() for mu in COSINES]
-    assert min(got) >= 0.97
+    assert min(got) >= 0.98
     assert max(got) <= 1.003
 
 
@@ -49,8 +49,47 @@ def test_white_furnace_with_nap(roughness):
 def test_white_furnace_with_coat(roughness):
     a = Appearance(albedo=WHITE, roughness=0.5, coat=1.0, coat_roughness=roughness)
     got = [reflected(a, view(mu)).max() for mu in COSINES]
-    assert min(got) >= 0.95
+    assert min(got) >= 0.98
     assert max(got) <= 1.003
+
+
+@pytest.mark.parametrize("anisotropy", [-0.8, -0.3, 0.4, 0.8])
+@pytest.mark.parametrize("roughness", [0.2, 0.5, 1.0])
+@pytest.mark.parametrize("metalness", [0.0, 1.0])
+def test_white_furnace_stretched(roughness, anisotropy, metalness):
+    """Bounces depend on the azimuth: tables between nodes are off by 0.8 % at most."""
+    a = Appearance(albedo=WHITE, roughness=roughness, anisotropy=anisotropy, metalness=metalness)
+    turned = [
+        np.array([np.sqrt(1 - mu**2) * np.cos(phi), np.sqrt(1 - mu**2) * np.sin(phi), mu])
+        for mu in (0.05, 0.2, 0.7)
+        for phi in (0.0, 0.5, 1.0, 1.3, 1.57)
+    ]
+    got = [reflected(a, v, 128).max() for v in turned]
+    assert min(got) >= 0.98
+    assert max(got) <= 1.009
+
+
+@pytest.mark.parametrize(
+    "layer",
+    [
+        {"roughness": 1.0},
+        {"roughness": 0.3, "anisotropy": 0.6},
+        {"coat": 1.0, "coat_roughness": 0.3},
+        {"roughness": 0.9, "sheen": WHITE, "sheen_roughness": 0.5},
+    ],
+    ids=["rough", "stretched", "coat", "nap"],
+)
+def test_mixtures_with_metal_go_from_one_to_the_other_without_a_step(layer):
+    """Of a mixture a share of the area is bare metal: light goes with it along a line."""
+    shares = np.linspace(0, 1, 9)
+    v, l = directions(50, 5), directions(50, 6)
+    made = [Appearance(albedo=WHITE, metalness=m, **layer) for m in shares]
+    values = np.array([brdf.evaluate(a, v, l) for a in made])
+    line = values[0] + (values[-1] - values[0]) * shares[:, None, None]
+    assert np.allclose(values, line, rtol=1e-9)
+    got = [reflected(a, view(mu), 128).max() for a in made[::2] for mu in (0.1, 0.4, 1.0)]
+    assert min(got) >= 0.98
+    assert max(got) <= 1.006
 
 
 def appearances():
@@ -85,7 +124,8 @@ def test_no_anisotropic_surface_does_either(appearance, anisotropy, mu, phi):
     )
     s = np.sqrt(1 - mu**2)
     v = np.array([s * np.cos(phi), s * np.sin(phi), mu])
-    assert reflected(a, v).max() <= 1.003
+    # Between the nodes of the tables of azimuth.
+    assert reflected(a, v).max() <= 1.009
 
 
 def directions(n, seed):

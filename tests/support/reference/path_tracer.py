@@ -158,13 +158,13 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
     if a.maps is not None:
         raise ValueError("measured maps are not written")
     curves = _curves(a)
-    f0 = (1 - a.metalness) * np.full(3, a.f0) + a.metalness * a.albedo
-    f90 = (1 - a.metalness) * brdf.F90(np.full(3, a.f0)) + a.metalness * brdf.F90(a.albedo)
+    f0, metal = np.full(3, a.f0), a.metalness
+    f90 = brdf.F90(f0)
     mean, coat_mean = brdf.E_mean(a.roughness), brdf.E_mean(a.coat_roughness)
     multiple = brdf.F_multiple(f0, f90, mean)
+    bare = (a.albedo, brdf.F90(a.albedo), brdf.F_multiple(a.albedo, brdf.F90(a.albedo), mean))
     coat_multiple = float(brdf.F_multiple(np.full(1, COAT_F0), np.ones(1), coat_mean)[0])
-    coat = brdf.coat_share(a)
-    sheen = float(a.sheen.max()) * (1 - a.metalness)
+    coat, sheen = a.coat, float(a.sheen.max())
     tilted = np.array([0.6, 0.0, 0.8])
     sheen_norm = float(brdf.sheen(a, tilted, tilted)) / _bare_sheen(a.sheen_roughness**2, 0.8)
     lobes = [alpha, a.coat_roughness**2] if coat > 0 else [alpha]
@@ -210,23 +210,20 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
             noh, loh = dr.clip(h.z, 0, 1), dr.clip(dr.dot(l, h), 0, 1)
             colour = mi.Color3f(a.albedo.tolist()) * share
             low, high = mi.Color3f(f0.tolist()), mi.Color3f(f90.tolist())
-            if a.metalness > 0 and relief is not None:
+            if metal > 0 and relief is not None:
                 raise ValueError("metal with a relief is not written")
             schlick = low + (high - low) * (1 - loh) ** 5
             single = _ggx(alpha, noh, v.z, l.z)
-            again = c("lost", v.z) * c("lost", l.z) / (np.pi * (1 - mean))
-            specular = schlick * single + mi.Color3f(multiple.tolist()) * again
+            again_base = c("lost", v.z) * c("lost", l.z) / (np.pi * (1 - mean))
+            specular = schlick * single + mi.Color3f(multiple.tolist()) * again_base
             out = dr.minimum(c("below", v.z), c("below", l.z)) * specular
-            out += (1 - a.metalness) * colour * c("base", v.z) * c("base", l.z)
+            out += colour * c("base", v.z) * c("base", l.z)
             if sheen > 0:
                 s = 1 / a.sheen_roughness**2
                 lobe = (2 + s) * dr.power(dr.maximum(1 - noh * noh, 1e-12), s / 2) / (2 * np.pi)
                 lobe *= sheen_norm / (4 * (l.z + v.z - l.z * v.z))
                 out += (
-                    dr.minimum(c("coat", v.z), c("coat", l.z))
-                    * (1 - a.metalness)
-                    * mi.Color3f(a.sheen.tolist())
-                    * lobe
+                    dr.minimum(c("coat", v.z), c("coat", l.z)) * mi.Color3f(a.sheen.tolist()) * lobe
                 )
             if coat > 0:
                 schlick = COAT_F0 + (1 - COAT_F0) * (1 - loh) ** 5
@@ -234,6 +231,10 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
                 out += coat * (
                     schlick * _ggx(a.coat_roughness**2, noh, v.z, l.z) + coat_multiple * again
                 )
+            if metal > 0:
+                low, high, more = (mi.Color3f(x.tolist()) for x in bare)
+                specular = (low + (high - low) * (1 - loh) ** 5) * single + more * again_base
+                out = (1 - metal) * out + metal * specular
             return out * l.z
 
         def density(self, v, l):
@@ -312,13 +313,14 @@ def layered_bsdf(mi, appearance: Appearance, relief: Relief | None):  # noqa: C9
 def _curves(a: Appearance) -> dict[str, np.ndarray]:
     """What each layer lets through and loses over sqrt(mu); ``base`` with its own mean."""
     mu = np.linspace(0, 1, _NODES) ** 2
-    coat, below, base = brdf.passed(a, mu)
+    d = np.column_stack([np.sqrt(1 - mu**2), np.zeros(_NODES), mu])
+    coat, below, base = brdf.passed(a, d)
     return {
         "coat": coat,
         "below": below,
         "base": base / np.sqrt(np.pi * brdf.coupling(a)),
-        "lost": brdf.E_lost(a.roughness, mu),
-        "coat_lost": brdf.E_lost(a.coat_roughness, mu),
+        "lost": brdf.E_lost(a.roughness, 0.0, d),
+        "coat_lost": brdf.E_lost(a.coat_roughness, 0.0, d),
     }
 
 

@@ -26,7 +26,7 @@ from seatlook.model import (
     named_view,
     sphere_distance,
 )
-from seatlook.model.light import BRIGHTEST, DISTANCE
+from seatlook.model.light import BRIGHTEST, DISTANCE, turned
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +78,7 @@ RIG: dict[str, Kind] = {
     "ambient_cd_m2": Number(low=0, high=1e6, default=0.0),
     "panorama": Text(),
     "panorama_cd_m2": Number(low=1e-9, high=BRIGHTEST, default=1.0),
+    "panorama_azimuth_deg": Number(low=-360, high=360, default=0.0),
     "ev100": Number(low=-10, high=30),
     "light": Rows(LightTable()),
 }
@@ -112,15 +113,14 @@ def make_rigs(document: Document, rows: list[dict[str, Any]], files: SceneFiles)
             sky = _sky(files, number, row)
             if sky is None and row["panorama"] is not None:
                 continue
-            rigs.append(
-                Rig(
-                    name=row["name"],
-                    lights=tuple(lights),
-                    ambient=row["ambient_cd_m2"],
-                    ev100=row["ev100"],
-                    panorama=sky,
-                )
+            rig = Rig(
+                name=row["name"],
+                lights=tuple(lights),
+                ambient=row["ambient_cd_m2"],
+                ev100=row["ev100"],
+                panorama=sky,
             )
+            rigs.append(turned(rig, row["panorama_azimuth_deg"] or 0.0))
     return tuple(rigs)
 
 

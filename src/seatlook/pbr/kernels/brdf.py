@@ -17,7 +17,14 @@ from seatlook.pbr.kernels.lobes import (
     V_Neubelt,
     lobe_of,
 )
-from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW, bilinear, cell, lookup, lookup_mean
+from seatlook.pbr.kernels.lookup import (
+    ROUGHNESS_LOW,
+    bilinear,
+    cell,
+    lookup,
+    lookup_mean,
+    stretched_at,
+)
 
 MIN_ALPHA = ROUGHNESS_LOW**2
 COAT_F0 = 0.04
@@ -48,7 +55,9 @@ class Tables(NamedTuple):
 
     ``scale, bias`` (k, n): GGX for F = F0 scale + F90 bias; ``sheen`` (k, n): Charlie, multiplied
     by ``sheen_norm`` (k,) so that it stays below 1; ``*_mean`` (k,): the same averaged over the
-    cosine-weighted hemisphere.
+    cosine-weighted hemisphere. ``stretched`` (r, a, t, m, 2): what anisotropy adds to scale and
+    bias, over roughness, anisotropy, cosine of the azimuth and sqrt(mu);
+    ``stretched_mean`` (r, a): to the average with F = 1.
     """
 
     scale: npt.NDArray[np.float64]
@@ -57,6 +66,8 @@ class Tables(NamedTuple):
     scale_mean: npt.NDArray[np.float64]
     bias_mean: npt.NDArray[np.float64]
     sheen_norm: npt.NDArray[np.float64]
+    stretched: npt.NDArray[np.float64]
+    stretched_mean: npt.NDArray[np.float64]
 
 
 @leaf()
@@ -66,16 +77,16 @@ def E_mean(tables, roughness):
 
 
 @leaf()
-def coat_share(material):
-    """How much of a surface is lacquered: no metal is."""
-    return material.coat * max(0.0, 1.0 - 2.0 * material.metalness)
+def stretch_of(tables, roughness, anisotropy):
+    """Cells of roughness and anisotropy in ``stretched``."""
+    rows, steps = tables.stretched_mean.shape
+    return cell(roughness, ROUGHNESS_LOW, 1.0, rows), cell(abs(anisotropy), 0.0, 1.0, steps)
 
 
 @leaf()
 def sheen_share(material):
-    """Strength of the sheen's strongest colour; metal has none."""
-    strongest = max(material.sheen[0], material.sheen[1], material.sheen[2])
-    return strongest * (1.0 - material.metalness)
+    """Strength of the sheen's strongest colour."""
+    return max(material.sheen[0], material.sheen[1], material.sheen[2])
 
 
 class Means(NamedTuple):
@@ -91,7 +102,10 @@ class Means(NamedTuple):
 def means_of(tables, material, roughness):
     """Means at the base's roughness."""
     base, coat, coat_again = E_mean(tables, roughness), 1.0, 0.0
-    if coat_share(material) > 0.0:
+    if material.anisotropy != 0.0:
+        (i, a), (k, b) = stretch_of(tables, roughness, material.anisotropy)
+        base += bilinear(tables.stretched_mean, i, a, k, b)
+    if material.coat > 0.0:
         coat = E_mean(tables, material.coat_roughness)
         coat_again = F_multiple(COAT_F0, 1.0, coat)
     return Means(base, F_multiple(material.f0, F90(material.f0), base), coat, coat_again)
@@ -114,11 +128,15 @@ class Layers(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """Where a surface point lies on the tables' axis of roughness: index and weight, per lobe."""
+    """Where a surface point lies on the tables' axes: index and weight, per lobe.
+
+    ``stretch``: of roughness and anisotropy.
+    """
 
     base: tuple[int, float]
     coat: tuple[int, float]
     sheen: tuple[int, float]
+    stretch: tuple[tuple[int, float], tuple[int, float]]
 
 
 @leaf()
@@ -129,17 +147,31 @@ def rows_of(tables, material, roughness):
         cell(roughness, ROUGHNESS_LOW, 1.0, n),
         cell(material.coat_roughness, ROUGHNESS_LOW, 1.0, n),
         cell(material.sheen_roughness, ROUGHNESS_LOW, 1.0, n),
+        stretch_of(tables, roughness, material.anisotropy),
     )
 
 
 @leaf()
-def layers_at(tables, material, rows, means, mu):
-    """Layers at cosine ``mu``."""
-    j, b = cell(np.sqrt(mu), 0.0, 1.0, tables.scale.shape[1])
+def _azimuth(material, x, y):
+    """Cosine of the azimuth of (x, y) from the wider axis of a material's lobe, 0 to 1."""
+    both = x * x + y * y
+    if both < 1e-12:
+        return 0.5
+    return abs(x if material.anisotropy > 0.0 else y) / np.sqrt(both)
+
+
+@leaf()
+def layers_at(tables, material, rows, means, azimuth, mu):
+    """Layers of the dielectric at cosine ``mu``; ``azimuth``: see ``_azimuth``."""
+    root = np.sqrt(mu)
+    j, b = cell(root, 0.0, 1.0, tables.scale.shape[1])
     i, a = rows.base
     scale, bias = bilinear(tables.scale, i, a, j, b), bilinear(tables.bias, i, a, j, b)
+    if material.anisotropy != 0.0:
+        more, more_bias = stretched_at(tables.stretched, rows.stretch, azimuth, root)
+        scale, bias = scale + more, bias + more_bias
     coat, sheen, lost = 1.0, 1.0, 0.0
-    share = coat_share(material)
+    share = material.coat
     if share > 0.0:
         i, a = rows.coat
         low, high = bilinear(tables.scale, i, a, j, b), bilinear(tables.bias, i, a, j, b)
@@ -165,8 +197,8 @@ def alphas(roughness, anisotropy):
 class View(NamedTuple):
     """What the BRDF needs of one surface point and view, whatever the light.
 
-    ``table_roughness``: of the narrower axis, so that energy added back is never too much;
-    ``f0, f90, again``: of the base's lobe, per channel.
+    ``roughness``: mean of both axes; ``f0, f90, again``: of the metal's lobe, per channel,
+    for as much of the surface as is metal.
     """
 
     ToV: float
@@ -174,7 +206,7 @@ class View(NamedTuple):
     NoV: float
     alpha_x: float
     alpha_y: float
-    table_roughness: float
+    roughness: float
     rows: Rows
     means: Means
     layers: Layers
@@ -188,26 +220,20 @@ class View(NamedTuple):
 def view_of(tables, material, roughness, colour, ToV, BoV, NoV):
     """View of a point with a base colour."""
     ax, ay = alphas(roughness, material.anisotropy)
-    narrow = np.sqrt(min(ax, ay))
-    means = means_of(tables, material, narrow)
-    rows = rows_of(tables, material, narrow)
-    layers = layers_at(tables, material, rows, means, NoV)
-    m, f0, mean = material.metalness, material.f0, means.base
-    # Dielectric and metal in linear mixture, so energy mixes too.
+    means = means_of(tables, material, roughness)
+    rows = rows_of(tables, material, roughness)
+    layers = layers_at(tables, material, rows, means, _azimuth(material, ToV, BoV), NoV)
+    m, mean, none = material.metalness, means.base, (0.0, 0.0, 0.0)
     if m == 0.0:
-        low, high = (f0, f0, f0), (F90(f0), F90(f0), F90(f0))
-        again = (means.again, means.again, means.again)
-        return View(ToV, BoV, NoV, ax, ay, narrow, rows, means, layers, colour, low, high, again)
+        return View(ToV, BoV, NoV, ax, ay, roughness, rows, means, layers, colour, none, none, none)
     r, g, b = colour
-    low = ((1.0 - m) * f0 + m * r, (1.0 - m) * f0 + m * g, (1.0 - m) * f0 + m * b)
-    f90 = (1.0 - m) * F90(f0)
-    high = (f90 + m * F90(r), f90 + m * F90(g), f90 + m * F90(b))
+    low, high = (m * r, m * g, m * b), (m * F90(r), m * F90(g), m * F90(b))
     again = (
-        F_multiple(low[0], high[0], mean),
-        F_multiple(low[1], high[1], mean),
-        F_multiple(low[2], high[2], mean),
+        m * F_multiple(r, F90(r), mean),
+        m * F_multiple(g, F90(g), mean),
+        m * F_multiple(b, F90(b), mean),
     )
-    return View(ToV, BoV, NoV, ax, ay, narrow, rows, means, layers, colour, low, high, again)
+    return View(ToV, BoV, NoV, ax, ay, roughness, rows, means, layers, colour, low, high, again)
 
 
 @leaf()
@@ -243,7 +269,8 @@ def brdf(tables, reflector, wider, ToL, BoL, NoL, out):
     LoH = min(1.0, ToL * ToH + BoL * BoH + NoL * NoH)
     ax, ay = widened(view.alpha_x, wider), widened(view.alpha_y, wider)
     lobe = GGX_stretched(ax, ay, view, ToL, BoL, NoL, ToH, BoH, NoH)
-    _layered(tables, reflector, wider, lobe, (NoL, NoH, LoH), out)
+    azimuth = _azimuth(reflector.material, ToL, BoL)
+    _layered(tables, reflector, wider, lobe, (azimuth, NoL, NoH, LoH), out)
 
 
 @leaf()
@@ -251,32 +278,39 @@ def brdf_isotropic(tables, reflector, wider, NoL, NoH, LoH, out):
     """Same where the lobe is as wide along as across, by the cosines alone."""
     view = reflector.sight
     lobe = GGX(lobe_of(view.alpha_x, wider), view.NoV, NoL, NoH)
-    _layered(tables, reflector, wider, lobe, (NoL, NoH, LoH), out)
+    _layered(tables, reflector, wider, lobe, (0.5, NoL, NoH, LoH), out)
 
 
 @leaf()
 def _layered(tables, reflector, wider, lobe, cosines, out):
-    """All layers, with the base's lobe at hand."""
-    (NoL, NoH, LoH), material, view = cosines, reflector.material, reflector.sight
-    here, there = view.layers, layers_at(tables, material, view.rows, view.means, NoL)
+    """All layers, with the base's lobe at hand.
+
+    Of a mixture so much of the area is bare metal, the rest dielectric under sheen and coat.
+    """
+    (azimuth, NoL, NoH, LoH), material, view = cosines, reflector.material, reflector.sight
+    here = view.layers
+    there = layers_at(tables, material, view.rows, view.means, azimuth, NoL)
     lost = (1.0 - here.scale - here.bias) * (1.0 - there.scale - there.bias)
     lost /= np.pi * (1.0 - view.means.base)
-    diffuse = (1.0 - material.metalness) * here.base * there.base / (np.pi * reflector.coupling)
-    sheen = min(here.sheen, there.sheen)
+    dielectric, f0 = 1.0 - material.metalness, material.f0
+    diffuse = dielectric * here.base * there.base / (np.pi * reflector.coupling)
     m = 1.0 - LoH
     m *= m * m * m * m
+    grey = (f0 + (F90(f0) - f0) * m) * lobe + view.means.again * lost
+    grey *= dielectric * min(here.sheen, there.sheen)
+    if material.coat > 0.0:
+        top = GGX(lobe_of(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
+        again = here.coat_lost * there.coat_lost / (np.pi * (1.0 - view.means.coat))
+        top = (COAT_F0 + (1.0 - COAT_F0) * m) * top + view.means.coat_again * again
+        grey += dielectric * material.coat * top
     for c in range(3):
-        fresnel = view.f0[c] + (view.f90[c] - view.f0[c]) * m
-        out[c] = sheen * (fresnel * lobe + view.again[c] * lost) + view.colour[c] * diffuse
+        out[c] = grey + view.colour[c] * diffuse
+    if material.metalness > 0.0:
+        for c in range(3):
+            fresnel = view.f0[c] + (view.f90[c] - view.f0[c]) * m
+            out[c] += fresnel * lobe + view.again[c] * lost
     if sheen_share(material) > 0.0:
         _add_sheen(reflector, min(here.coat, there.coat), NoL, NoH, out)
-    share = coat_share(material)
-    if share > 0.0:
-        lobe = GGX(lobe_of(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
-        again = here.coat_lost * there.coat_lost / (np.pi * (1.0 - view.means.coat))
-        coat = share * ((COAT_F0 + (1.0 - COAT_F0) * m) * lobe + view.means.coat_again * again)
-        for c in range(3):
-            out[c] += coat
 
 
 @leaf()
@@ -299,9 +333,11 @@ def albedo_towards(tables, material, view, specular, diffuse):
     if sheen_share(material) > 0.0:
         sheen = here.coat * (1.0 - metal)
         sheen *= lookup(tables.sheen, material.sheen_roughness, view.NoV)
-    lost = 1.0 - here.scale - here.bias
+    lost, f0 = 1.0 - here.scale - here.bias, material.f0
+    grey = f0 * here.scale + F90(f0) * here.bias + view.means.again * lost
+    grey *= (1.0 - metal) * here.sheen
     for c in range(3):
         lobe = view.f0[c] * here.scale + view.f90[c] * here.bias + view.again[c] * lost
-        specular[c] = here.sheen * lobe
+        specular[c] = grey + lobe
         diffuse[c] = (1.0 - metal) * view.colour[c] * here.base + sheen * material.sheen[c]
-    return 1.0 - here.coat
+    return (1.0 - metal) * (1.0 - here.coat)

@@ -16,11 +16,14 @@ from seatlook.pbr.kernels.surface import (
     cross,
     dot,
     lift,
+    minus,
     row,
 )
 
 # What a ray meets other than the front of a face: the sky, what does not shine; or it is not sent.
 OPEN, DARK, UNSENT = -1, -2, -3
+# Taken for the distance [m] of what does not shine: the inside of a cover or a seam.
+DARK_AT = 0.01
 
 
 @njit(cache=True)
@@ -76,7 +79,7 @@ def face_met(bvh, o, d, faces, stack):
     return f if front and f < faces else DARK
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def sky_seen(normals, which, hits, strata, panorama, unhidden, out):
     """Mean luminance (m, 3) of a panorama over the open directions.
 
@@ -99,7 +102,7 @@ def sky_seen(normals, which, hits, strata, panorama, unhidden, out):
             out[r, k] = unhidden[r, k] * open_[k] / every[k]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def gather(bvh, faces, points, normals, which, strata, hits):
     """What the vertices ``which`` see along strata^2 cosine-weighted directions, into ``hits``."""
     stack = new_stack()
@@ -109,6 +112,22 @@ def gather(bvh, faces, points, normals, which, strata, hits):
         o = along(row(points, i), 10 * ABOVE, n)
         for q in range(strata * strata):
             hits[r, q] = face_met(bvh, o, direction(n, i, q, strata), faces, stack)
+
+
+@njit(cache=True)
+def around(mesh, points, hits, out):
+    """How far [m] the faces met by the rays of each point are, as a harmonic mean, into ``out``."""
+    third = 1.0 / 3.0
+    for r in range(len(hits)):
+        total = 0.0
+        for q in range(hits.shape[1]):
+            f = hits[r, q]
+            if f >= 0:
+                to = minus(blend(mesh.vertices, mesh.faces, f, third, third), row(points, r))
+                total += 1.0 / max(1e-4, np.sqrt(dot(to, to)))
+            elif f == DARK:
+                total += 1.0 / DARK_AT
+        out[r] = hits.shape[1] / total if total > 0.0 else np.inf
 
 
 @leaf()

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from seatlook.pbr.kernels import leaf
-from seatlook.pbr.kernels.brdf import COAT_F0, coat_share, sheen_share
+from seatlook.pbr.kernels.brdf import COAT_F0, sheen_share
 from seatlook.pbr.kernels.light import above_horizon, parts_of, point_of, towards_point
-from seatlook.pbr.kernels.lobes import GGX, D_sheen, V_Neubelt, lobe_of
+from seatlook.pbr.kernels.lobes import F90, GGX, D_sheen, V_Neubelt, lobe_of
 from seatlook.pbr.kernels.relief_samples import layers_towards, mean_of
 from seatlook.pbr.kernels.surface import along, dot, unit
 
@@ -54,23 +54,29 @@ def brdf_of_relief(reflector, relief, disc, within, n, v, out):
     layers_towards(reflector.layers, rows.NoL, size, rows.light)
     wider = disc.wider + within
     _base(lobe_of(view.alpha_x, wider), relief)
-    dielectric = 1.0 - material.metalness
+    dielectric, f0 = 1.0 - material.metalness, material.f0
     diffuse = dielectric * mean_of(rows.diffuse, size) / (np.pi * reflector.coupling)
-    again = mean_of(rows.again, size) / (np.pi * (1.0 - view.means.base))
-    lobe, grazing = mean_of(rows.lobe, size), mean_of(rows.lobe_grazing, size)
+    bounced = 1.0 / (np.pi * (1.0 - view.means.base))
+    grey = f0 * mean_of(rows.lobe, size) + (F90(f0) - f0) * mean_of(rows.lobe_grazing, size)
+    grey += view.means.again * bounced * mean_of(rows.again, size)
     sheen = dielectric * _sheen(reflector.fibres, relief) if sheen_share(material) > 0.0 else 0.0
-    top = coat_share(material)
-    if top > 0.0:
-        top *= _coat(lobe_of(material.coat_roughness**2, wider), view, relief)
+    if material.coat > 0.0:
+        coat_width = lobe_of(material.coat_roughness**2, wider)
+        grey += material.coat * _coat(coat_width, view, relief)
     for k in range(3):
-        out[k] = view.f0[k] * lobe + (view.f90[k] - view.f0[k]) * grazing
-        out[k] += view.again[k] * again + view.colour[k] * diffuse
-        out[k] += sheen * material.sheen[k] + top
+        out[k] = dielectric * grey + view.colour[k] * diffuse + sheen * material.sheen[k]
+    if material.metalness > 0.0:
+        _bare(lobe_of(view.alpha_x, wider), relief)
+        again = bounced * mean_of(rows.again, size)
+        lobe, grazing = mean_of(rows.lobe, size), mean_of(rows.lobe_grazing, size)
+        for k in range(3):
+            out[k] += view.f0[k] * lobe + (view.f90[k] - view.f0[k]) * grazing
+            out[k] += view.again[k] * again
 
 
 @leaf()
 def _base(lobe, relief):
-    """What diffuse base, lobe and bounces in it reflect, but for colours."""
+    """What diffuse base, lobe and bounces in it reflect below sheen and coat, but for colours."""
     rows, size = relief
     here, there = rows.layers, rows.light
     for q in range(size):
@@ -78,6 +84,20 @@ def _base(lobe, relief):
         c = NoL * rows.part[q]
         rows.diffuse[q] = c * rows.share[q] * here.base[q] * there.base[q]
         c *= min(here.sheen[q], there.sheen[q])
+        rows.again[q] = c * here.lost[q] * there.lost[q]
+        c *= GGX(lobe, rows.NoV[q], NoL, rows.NoH[q])
+        rows.lobe[q] = c
+        rows.lobe_grazing[q] = c * rows.grazing[q]
+
+
+@leaf()
+def _bare(lobe, relief):
+    """What a lobe and bounces in it reflect that nothing covers, but for colours."""
+    rows, size = relief
+    here, there = rows.layers, rows.light
+    for q in range(size):
+        NoL = rows.NoL[q]
+        c = NoL * rows.part[q]
         rows.again[q] = c * here.lost[q] * there.lost[q]
         c *= GGX(lobe, rows.NoV[q], NoL, rows.NoH[q])
         rows.lobe[q] = c

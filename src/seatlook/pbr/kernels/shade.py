@@ -22,6 +22,7 @@ from seatlook.pbr.kernels.light import (
     point_of,
     towards_point,
 )
+from seatlook.pbr.kernels.parts import in_parts
 from seatlook.pbr.kernels.relief_light import brdf_of_relief, look_at_discs
 from seatlook.pbr.kernels.relief_samples import (
     RELIEF,
@@ -30,7 +31,7 @@ from seatlook.pbr.kernels.relief_samples import (
     mirrored_by,
     sampled,
 )
-from seatlook.pbr.kernels.stage import Hit, Sample, frame, place_at, towards_eye
+from seatlook.pbr.kernels.stage import Hit, Sample, Stage, frame, place_at, towards_eye
 from seatlook.pbr.kernels.surface import along, dot, meet, meet_plane, ray_through, row_of, unit
 from seatlook.pbr.kernels.tables import coupling_at
 
@@ -90,7 +91,7 @@ def _shade(stage, sample, scratch):
         warp, weft = frame(n, warp)
     x, y, z = dot(warp, v), dot(weft, v), dot(n, v)
     view = view_of(look.tables, material, roughness, detail.colour, x, y, z)
-    mean = coupling_at(look.couplings[panel], view.table_roughness)
+    mean = coupling_at(look.couplings[panel], view.roughness)
     reflector = Reflector(material, look.layers[panel], look.fibres[panel], mean, view)
     shares = (1.0, 1.0)
     if has_relief:
@@ -164,7 +165,7 @@ def _add_indirect(stage, place, reflector, beside, n, shares, work):
     base = top = row_of(indirect.even)
     if len(indirect.panorama):
         mirror = along((-place.v[0], -place.v[1], -place.v[2]), 2.0 * view.NoV, n)
-        rough = _blurred(view.table_roughness, beside)
+        rough = _blurred(view.roughness, beside)
         base = top = panorama_towards(indirect.panorama, rough, mirror)
         if coat > 0.0:
             rough = _blurred(material.coat_roughness, beside)
@@ -229,8 +230,7 @@ def _pixel(stage, raster, x, y, between, scratch):
     return missed * weight
 
 
-@njit(cache=True)
-def shade(stage, raster, backdrop, out):
+def shade(stage: Stage, raster: Raster, backdrop: np.ndarray, out: np.ndarray) -> float:
     """Mean radiance of the samples into each pixel of ``out`` (h, w, 3).
 
     ``backdrop`` (3,) is seen where no surface is. Of a coherent pixel only the diagonal is shaded,
@@ -238,6 +238,15 @@ def shade(stage, raster, backdrop, out):
     samples show it.
     Returns the greatest radiance of the surface, nan where one is not finite.
     """
+    lines = -(-raster.coherent.shape[0] // _TILE)
+    return float(
+        np.max(in_parts(lines, lambda a, b: _shade_tiles(stage, raster, backdrop, (a, b), out)))
+    )
+
+
+@njit(cache=True, nogil=True)
+def _shade_tiles(stage, raster, backdrop, lines, out):
+    """Shade the lines of tiles from ``lines[0]`` on and before ``lines[1]``."""
     scratch = Scratch(
         np.zeros(3),
         np.zeros((3, 3)),
@@ -251,7 +260,8 @@ def shade(stage, raster, backdrop, out):
     height, width = raster.coherent.shape
     columns = -(-width // _TILE)
     # By tiles: neighbours lie on the same faces, whose vertices are then still at hand.
-    for number in range(columns * -(-height // _TILE) * _TILE * _TILE):
+    size = columns * _TILE * _TILE
+    for number in range(lines[0] * size, lines[1] * size):
         tile, inside = number // (_TILE * _TILE), number % (_TILE * _TILE)
         y = tile // columns * _TILE + inside // _TILE
         x = tile % columns * _TILE + inside % _TILE

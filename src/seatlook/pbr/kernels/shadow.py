@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 from seatlook.pbr.kernels import leaf
-from seatlook.pbr.kernels.bvh import hidden_at, new_stack, occluded
-from seatlook.pbr.kernels.light import SMALL, across, angle_of, arriving
+from seatlook.pbr.kernels.bvh import Bvh, hidden_at, new_stack, occluded
+from seatlook.pbr.kernels.light import SMALL, Lights, across, angle_of, arriving
 from seatlook.pbr.kernels.noise import even
+from seatlook.pbr.kernels.parts import in_parts
 from seatlook.pbr.kernels.surface import (
+    Eye,
+    Mesh,
     along,
     blend,
     dot,
@@ -140,34 +144,32 @@ def _of_neighbours(state, x, y):
     return here if same else _EMPTY
 
 
-@njit(cache=True)
-def _first_look(bvh, mesh, eye, ids, lights, k, factor, state, octave):
-    """One ray per pixel to the middle of the light, on a chequerboard.
+@njit(cache=True, nogil=True)
+def _first_look(bvh, mesh, eye, ids, lights, k, factor, between, lines, state, octave):
+    """One ray per pixel of some lines to the middle of the light, on a chequerboard.
 
-    The pixels between look where their neighbours do not agree. ``octave`` (h, w) of a hidden
-    pixel: its shadow's edge is less than 2^octave pixels wide.
+    The pixels ``between`` look afterwards, where their neighbours do not agree. ``octave`` (h, w)
+    of a hidden pixel: its shadow's edge is less than 2^octave pixels wide.
     """
     stack = new_stack()
     pixel = factor * np.sqrt(dot(row_of(eye.right), row_of(eye.right)))
     pixel /= np.sqrt(dot(row_of(eye.first), row_of(eye.first)))
-    state[:] = _EMPTY
-    for between in range(2):
-        for y in range(state.shape[0]):
-            for x in range((y + between) % 2, state.shape[1], 2):
-                for q in range(factor * factor):
-                    i, j = x * factor + q % factor, y * factor + q // factor
-                    f = ids[j, i]
-                    if f < 0:
-                        continue
-                    if between:
-                        state[y, x] = _of_neighbours(state, x, y)
-                    if state[y, x] == _EMPTY:
-                        met, wide = _first_ray(bvh, mesh, eye, f, i, j, lights, k, stack)
-                        state[y, x] = met
-                        octave[y, x] = _octave(wide / pixel + 0.5)
-                    elif state[y, x] == _HIDDEN:
-                        octave[y, x] = max(octave[y, x - 1], octave[y, x + 1])
-                    break
+    for y in range(lines[0], lines[1]):
+        for x in range((y + between) % 2, state.shape[1], 2):
+            for q in range(factor * factor):
+                i, j = x * factor + q % factor, y * factor + q // factor
+                f = ids[j, i]
+                if f < 0:
+                    continue
+                if between:
+                    state[y, x] = _of_neighbours(state, x, y)
+                if state[y, x] == _EMPTY:
+                    met, wide = _first_ray(bvh, mesh, eye, f, i, j, lights, k, stack)
+                    state[y, x] = met
+                    octave[y, x] = _octave(wide / pixel + 0.5)
+                elif state[y, x] == _HIDDEN:
+                    octave[y, x] = max(octave[y, x - 1], octave[y, x + 1])
+                break
 
 
 @leaf()
@@ -253,22 +255,42 @@ def _share_seen(bvh, lights, k, start, shift, first, step, total, stack):
     return 1.0 if reaches(bvh, p, plane, rim, far, stack) else 0.0
 
 
-@njit(cache=True)
-def shadows(bvh, mesh, eye, ids, lights, k, factor, rays, out):
+def shadows(
+    bvh: Bvh,
+    mesh: Mesh,
+    eye: Eye,
+    ids: npt.NDArray[np.int32],
+    lights: Lights,
+    k: int,
+    factor: int,
+    rays: int,
+    out: npt.NDArray[np.uint8],
+) -> None:
     """Share of light k [1/255] that each sample sees, into ``out`` like ``ids``.
 
     Where a pixel and its neighbours agree, as far as the edge of a shadow may spread, one ray is
     enough, and where the rim of the light agrees with its middle, those to it; in a penumbra every
     sample sends ``rays`` to its own stratified points of the light's disc.
     """
-    height, width = ids.shape[0] // factor, ids.shape[1] // factor
-    state, near = np.zeros((height, width), np.uint8), np.zeros((height, width), np.uint8)
-    octave = np.zeros((height, width), np.uint8)
-    _first_look(bvh, mesh, eye, ids, lights, k, factor, state, octave)
+    size = (ids.shape[0] // factor, ids.shape[1] // factor)
+    state, near, octave = (np.zeros(size, np.uint8) for _ in range(3))
+    seen = (bvh, mesh, eye, ids, lights, k, factor)
+    for between in (False, True):
+
+        def look(first: int, last: int, between: bool = between) -> None:
+            _first_look(*seen, between, (first, last), state, octave)
+
+        in_parts(size[0], look, least=16)
     _edges(state, octave, near)
+    in_parts(size[0], lambda a, b: _shares(*seen, rays, (a, b), state, near, out), least=16)
+
+
+@njit(cache=True, nogil=True)
+def _shares(bvh, mesh, eye, ids, lights, k, factor, rays, lines, state, near, out):
+    """What the samples of some lines of pixels see, by their states."""
     stack, step = new_stack(), factor * factor
-    for y in range(height):
-        for x in range(width):
+    for y in range(lines[0], lines[1]):
+        for x in range(state.shape[1]):
             here = state[y, x]
             if here == _EMPTY:
                 continue

@@ -15,12 +15,11 @@ from seatlook.pbr.kernels.brdf import (
     Reflector,
     albedo_towards,
     brdf,
-    coat_share,
     view_of,
 )
 from seatlook.pbr.kernels.bvh import new_stack
 from seatlook.pbr.kernels.light import Lights, above_horizon, across, angle_of, arriving
-from seatlook.pbr.kernels.lobes import GGX, F_Schlick, lobe_of
+from seatlook.pbr.kernels.lobes import F90, GGX, F_Schlick, lobe_of
 from seatlook.pbr.kernels.noise import even
 from seatlook.pbr.kernels.rays import DARK, OPEN, UNSENT, direction, face_met
 from seatlook.pbr.kernels.shadow import ABOVE
@@ -33,6 +32,15 @@ _WIDTHS = (0.1, 0.35)
 # Squared width by which rays of one per solid angle widen the lobes they meet: that of a disc as
 # large, four times for the curvature of what they meet.
 _BLUR = 4 * 0.125 / np.pi
+# Of what is gathered over the half-space a ray counts as if it stood for a steradian: light that a
+# highlight throws onto cloth is spread over that, or its few rays would let single points glow.
+_OVER_HALF_SPACE = 1.0
+# Rays along a reflection by which highlights in it are blurred, however many there are.
+_RESOLVED = 72.0
+# Of a lamp, what a face sends onto cloth is no brighter than a white card facing it, and what is
+# mirrored no brighter than four: a highlight at grazing angles that few rays meet would outshine
+# all that they see.
+_SENT, _MIRRORED = 1.0 / np.pi, 4.0 / np.pi
 
 
 @leaf()
@@ -84,15 +92,17 @@ def _reflectance(material, n, v, d):
     h = unit(along(v, 1.0, d))
     NoV, NoL, NoH, LoH = dot(n, v), dot(n, d), min(1.0, dot(n, h)), min(1.0, dot(d, h))
     metal, f0 = material.metalness, material.f0
-    f0 += metal * ((material.albedo[0] + material.albedo[1] + material.albedo[2]) / 3.0 - f0)
-    value = F_Schlick(f0, min(1.0, 50.0 * f0), LoH) * GGX(
-        lobe_of(max(material.roughness**2, MIN_ALPHA), 0.0), NoV, NoL, NoH
-    )
-    share = coat_share(material)
-    if share > 0.0:
-        coat = F_Schlick(COAT_F0, 1.0, LoH)
-        value *= 1.0 - share * coat
-        value += share * coat * GGX(lobe_of(material.coat_roughness**2, 0.0), NoV, NoL, NoH)
+    lobe = GGX(lobe_of(max(material.roughness**2, MIN_ALPHA), 0.0), NoV, NoL, NoH)
+    value = (1.0 - metal) * F_Schlick(f0, F90(f0), LoH)
+    if material.coat > 0.0:
+        coat = material.coat * F_Schlick(COAT_F0, 1.0, LoH)
+        top = GGX(lobe_of(material.coat_roughness**2, 0.0), NoV, NoL, NoH)
+        value = value * (1.0 - coat) * lobe + (1.0 - metal) * coat * top
+    else:
+        value *= lobe
+    if metal > 0.0:
+        grey = (material.albedo[0] + material.albedo[1] + material.albedo[2]) / 3.0
+        value += metal * F_Schlick(grey, F90(grey), LoH) * lobe
     return value * NoL
 
 
@@ -131,7 +141,7 @@ class Reflection(NamedTuple):
     strata: int
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def look_along_lobes(bvh, faces, reflection, normals, which, hits):
     """What the vertices ``which`` see along 2 strata^2 rays of reflection, into ``hits``.
 
@@ -152,11 +162,11 @@ def look_along_lobes(bvh, faces, reflection, normals, which, hits):
 
 
 @leaf()
-def _send(sources, f, d, density, work):
+def _send(sources, f, d, density, most, work):
     """Luminance that face f, seen from afar, sends against the ray d, into ``work[0]``.
 
     ``density``: rays like this one per solid angle; highlights of a finer detail than they resolve
-    are blurred, or single vertices would glow.
+    are blurred, or single vertices would glow. ``most``: of a lamp's irradiance facing it.
     """
     mesh, look, lights, third = sources.mesh, sources.look, sources.lights, 1.0 / 3.0
     v = (-d[0], -d[1], -d[2])
@@ -174,7 +184,7 @@ def _send(sources, f, d, density, work):
     sky = blend(sources.sky, mesh.faces, f, third, third)
     for c in range(3):
         out[c] = (f_out[c] + coat + diffuse[c]) * sky[c]
-    mean = coupling_at(look.couplings[panel], view.table_roughness)
+    mean = coupling_at(look.couplings[panel], view.roughness)
     reflector = Reflector(material, look.layers[panel], look.fibres[panel], mean, view)
     for k in range(len(lights.near)):
         seen = 0.0
@@ -191,10 +201,10 @@ def _send(sources, f, d, density, work):
         x, y = dot(warp, l), dot(weft, l)
         brdf(look.tables, reflector, wider, x, y, NoL, f_out)
         for c in range(3):
-            out[c] += seen * f_out[c] * NoL * e[c]
+            out[c] += seen * min(f_out[c] * NoL, most) * e[c]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def first_bounce(sources, vertices, strata, out):
     """Mean luminance (m, 3) that vertices get from the faces they met."""
     work, rays, hits = np.zeros((3, 3)), strata * strata, vertices.hits
@@ -205,8 +215,7 @@ def first_bounce(sources, vertices, strata, out):
         for q in range(rays):
             if hits[r, q] >= 0:
                 d = direction(n, i, q, strata)
-                density = rays * dot(n, d) / np.pi
-                _send(sources, hits[r, q], d, density, work)
+                _send(sources, hits[r, q], d, _OVER_HALF_SPACE, _SENT, work)
                 for c in range(3):
                     out[r, c] += work[0, c] / rays
 
@@ -220,7 +229,7 @@ def _covered(hits):
     return covered
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def reflected(sources, vertices, reflection, panels, share, out):
     """What a reflection sees: ``share`` (m,) of it open, and mean luminance (m, 3) of faces met.
 
@@ -246,8 +255,7 @@ def reflected(sources, vertices, reflection, panels, share, out):
             if hits[r, q] == OPEN:
                 open_ += weight
             elif hits[r, q] >= 0:
-                density *= hits.shape[1]
-                _send(sources, hits[r, q], d, density, work)
+                _send(sources, hits[r, q], d, _RESOLVED * density, _MIRRORED, work)
                 for c in range(3):
                     out[r, c] += weight * work[0, c]
         if total > 0.0:

@@ -110,24 +110,27 @@ def frame(n, warp):
 
 
 @leaf()
-def _open_at(share, faces, f, b1, b2):
-    """Open share (n,) in face f; beside the face a line through the corners leaves 0 to 1."""
-    i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
-    value = (1.0 - b1 - b2) * share[i] + b1 * share[j] + b2 * share[k]
-    return min(max(value, 0.0), 1.0)
+def inside(b1, b2):
+    """Weights of the second and third corner held within the face."""
+    b1 = min(max(b1, 0.0), 1.0)
+    return b1, min(max(b2, 0.0), 1.0 - b1)
 
 
 @leaf()
-def _light_at(table, faces, f, b1, b2):
-    """Gathered light (n, 3) in face f; beside a bright corner a line through it falls below 0."""
-    r, g, b = blend(table, faces, f, b1, b2)
-    return max(r, 0.0), max(g, 0.0), max(b, 0.0)
+def _open_at(share, faces, f, b1, b2):
+    """Open share (n,) in face f."""
+    return (1.0 - b1 - b2) * share[faces[f, 0]] + b1 * share[faces[f, 1]] + b2 * share[faces[f, 2]]
 
 
 @leaf()
 def place_at(mesh, indirect, hit):
-    """Place that a ray meets."""
+    """Place that a ray meets.
+
+    What was gathered at the corners of the face lies between them: a line through a bright and a
+    dark one leads below 0 beside the face, where the middle of a pixel may be.
+    """
     f, b1, b2, plane, ray = hit.face, hit.b1, hit.b2, hit.plane, hit.ray
+    c1, c2 = inside(b1, b2)
     v = (-ray[0], -ray[1], -ray[2])
     n = unit(blend(mesh.normals, mesh.faces, f, b1, b2))
     if dot(plane, v) < 0.0:
@@ -140,7 +143,7 @@ def place_at(mesh, indirect, hit):
         n,
         warp,
         weft,
-        _light_at(indirect.diffuse, mesh.faces, f, b1, b2),
-        _light_at(indirect.mirrored, mesh.faces, f, b1, b2),
-        _open_at(indirect.open, mesh.faces, f, b1, b2),
+        blend(indirect.diffuse, mesh.faces, f, c1, c2),
+        blend(indirect.mirrored, mesh.faces, f, c1, c2),
+        _open_at(indirect.open, mesh.faces, f, c1, c2),
     )

@@ -40,6 +40,10 @@ class Eye(NamedTuple):
     right: npt.NDArray[np.float64]
     down: npt.NDArray[np.float64]
 
+    def part(self, left: int, top: int) -> Eye:
+        """Same eye, for samples counted from one in the picture."""
+        return self._replace(first=self.first + left * self.right + top * self.down)
+
 
 @leaf()
 def dot(a, b):
@@ -164,6 +168,15 @@ def covered(ids, faces, factor, out):
                 f = ids[y * factor + q // factor, x * factor + q % factor]
                 count += 0 <= f < faces
             out[y, x] = count / (factor * factor)
+
+
+@njit(cache=True)
+def mark_faces(ids, seen):
+    """Whether each face is in a picture, into ``seen`` (m,)."""
+    for j in range(ids.shape[0]):
+        for i in range(ids.shape[1]):
+            if ids[j, i] >= 0:
+                seen[ids[j, i]] = True
 
 
 @njit(cache=True)

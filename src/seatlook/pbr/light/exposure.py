@@ -13,6 +13,8 @@ from seatlook.model.colour import srgb_encode
 from seatlook.pbr.light.rig import SEAT, lux_at_seat
 
 Radiance = npt.NDArray[np.float32]
+# Lines of a picture that are shown at once.
+_LINES = 256
 
 
 def ev100(rig: Rig, point: tuple[float, float, float] | FloatArray = SEAT) -> float:
@@ -87,17 +89,21 @@ def to_display(
             expected=f"one of {', '.join(TONE_CURVES)}",
             hint=did_you_mean(tone, TONE_CURVES),
         )
-    exposed = radiance.astype(np.float64) / saturation_luminance(ev)
-    if white is not None:
-        exposed /= white
-    linear = TONE_CURVES[tone](exposed)
-    code = 255.0 * srgb_encode(linear)
-    return np.floor(np.clip(code + _dither(*radiance.shape[:2]), 0.0, 255.0)).astype(np.uint8)
+    out = np.empty(radiance.shape, dtype=np.uint8)
+    # By some lines: in doubles a large picture would take gigabytes.
+    for top in range(0, len(radiance), _LINES):
+        exposed = radiance[top : top + _LINES].astype(np.float64) / saturation_luminance(ev)
+        if white is not None:
+            exposed /= white
+        code = 255.0 * srgb_encode(TONE_CURVES[tone](exposed))
+        code += _dither(top, *exposed.shape[:2])
+        out[top : top + _LINES] = np.floor(np.clip(code, 0.0, 255.0))
+    return out
 
 
-def _dither(height: int, width: int) -> FloatArray:
+def _dither(top: int, height: int, width: int) -> FloatArray:
     """Interleaved gradient noise in (0, 1), one value per pixel; Jimenez 2014."""
-    x, y = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
+    x, y = np.meshgrid(np.arange(width, dtype=float), top + np.arange(height, dtype=float))
     noise = np.modf(52.9829189 * np.modf(0.06711056 * x + 0.00583715 * y)[0])[0]
     # Short of both ends, so that white stays white where 255 comes out as 254.999.
     return np.asarray(0.002 + 0.996 * noise[..., None])

@@ -1,12 +1,14 @@
 """The BRDF on arrays: the reference that the compiled terms and a path tracer must agree with.
 
-A stack, from the top: clear coat, sheen, a GGX base whose colour mixes dielectric and
-metal, and the diffuse light that gets through all of them. Each layer hands on only what it has
-not reflected, in both directions, so the whole is reciprocal and never gives back more than it
-gets. Cosines are ``NoL``, ``NoV``, ``NoH``, ``LoH``; T is the warp and B the weft direction.
+A stack, from the top: clear coat, sheen, a GGX base and the diffuse light that gets through all of
+them. Each layer hands on only what it has not reflected, in both directions, so the whole is
+reciprocal and never gives back more than it gets. Of a mixture with metal so much of the area is
+bare metal. Cosines are ``NoL``, ``NoV``, ``NoH``, ``LoH``; T is the warp and B the weft direction.
 """
 
 from __future__ import annotations
+
+import itertools
 
 import numpy as np
 
@@ -67,69 +69,103 @@ def lookup(table: FloatArray, roughness: float, mu: FloatArray) -> FloatArray:
     return np.asarray((1 - a) * below + a * above)
 
 
-def E_mean(roughness: float) -> float:
+def E_mean(roughness: float, anisotropy: float = 0.0) -> float:
     """Hemisphere mean of the albedo of a lobe with F = 1."""
     t = load_tables()
     i, a = _cell(np.asarray(roughness), ROUGHNESS_LOW, len(t.scale_mean))
     mean = t.scale_mean + t.bias_mean
-    return float((1 - a) * mean[i] + a * mean[i + 1])
+    value = (1 - a) * mean[i] + a * mean[i + 1]
+    if anisotropy:
+        i, a = _cell(np.asarray(roughness), ROUGHNESS_LOW, t.stretched_mean.shape[0])
+        j, b = _cell(np.asarray(abs(anisotropy)), 0.0, t.stretched_mean.shape[1])
+        low = (1 - b) * t.stretched_mean[i, j] + b * t.stretched_mean[i, j + 1]
+        high = (1 - b) * t.stretched_mean[i + 1, j] + b * t.stretched_mean[i + 1, j + 1]
+        value += (1 - a) * low + a * high
+    return float(value)
 
 
-def E_lost(roughness: float, mu: FloatArray) -> FloatArray:
+def scale_and_bias(
+    roughness: float, anisotropy: float, d: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Albedo of a lobe towards unit directions (..., 3) is ``F0 scale + F90 bias``."""
+    t, mu = load_tables(), d[..., 2]
+    scale, bias = lookup(t.scale, roughness, mu), lookup(t.bias, roughness, mu)
+    if not anisotropy:
+        return scale, bias
+    both = d[..., 0] ** 2 + d[..., 1] ** 2
+    wide = np.abs(d[..., 0 if anisotropy > 0 else 1])
+    azimuth = np.where(both < 1e-12, 0.5, wide / np.sqrt(np.maximum(both, 1e-12)))
+    places = (np.asarray(roughness), np.asarray(abs(anisotropy)), azimuth, np.sqrt(mu))
+    cells = [
+        _cell(place, ROUGHNESS_LOW if axis == 0 else 0.0, t.stretched.shape[axis])
+        for axis, place in enumerate(places)
+    ]
+    more = np.zeros((*mu.shape, 2))
+    for corner in itertools.product((0, 1), repeat=4):
+        weight = np.ones(())
+        for (_, a), side in zip(cells, corner, strict=True):
+            weight = weight * (a if side else 1 - a)
+        node = tuple(i + side for (i, _), side in zip(cells, corner, strict=True))
+        more += weight[..., None] * t.stretched[node]
+    return scale + more[..., 0], bias + more[..., 1]
+
+
+def E_lost(roughness: float, anisotropy: float, d: FloatArray) -> FloatArray:
     """Kulla and Conty 2017: share of a lobe with F = 1 that needs more than one bounce."""
-    t = load_tables()
-    return 1 - lookup(t.scale, roughness, mu) - lookup(t.bias, roughness, mu)
+    scale, bias = scale_and_bias(roughness, anisotropy, d)
+    return 1 - scale - bias
 
 
-def E_GGX(roughness: float, mu: FloatArray, f0: FloatArray, f90: FloatArray) -> FloatArray:
-    """Kulla and Conty 2017: reflected share of one GGX lobe with all its bounces."""
-    t = load_tables()
-    single = f0 * lookup(t.scale, roughness, mu) + f90 * lookup(t.bias, roughness, mu)
-    return single + F_multiple(f0, f90, E_mean(roughness)) * E_lost(roughness, mu)
+def E_GGX(lobe: tuple[float, float], d: FloatArray, f0: FloatArray, f90: FloatArray) -> FloatArray:
+    """Kulla and Conty 2017: reflected share of one GGX lobe with all its bounces.
+
+    ``lobe``: roughness and anisotropy; ``d``: unit directions (..., 3).
+    """
+    scale, bias = scale_and_bias(*lobe, d)
+    return f0 * scale + f90 * bias + F_multiple(f0, f90, E_mean(*lobe)) * (1 - scale - bias)
 
 
-def alphas(appearance: Appearance) -> tuple[float, float]:
+def alphas(roughness: float, anisotropy: float) -> tuple[float, float]:
     """Kulla and Conty 2017: width of the lobe along and across the warp."""
-    a = appearance.roughness**2
-    return (
-        max(a * (1 + appearance.anisotropy), MIN_ALPHA),
-        max(a * (1 - appearance.anisotropy), MIN_ALPHA),
-    )
+    a = roughness**2
+    return max(a * (1 + anisotropy), MIN_ALPHA), max(a * (1 - anisotropy), MIN_ALPHA)
 
 
-def coat_share(appearance: Appearance) -> float:
-    """How much of a surface is lacquered: no metal is."""
-    return appearance.coat * max(0.0, 1 - 2 * appearance.metalness)
+def passed(appearance: Appearance, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Light left in directions (..., 3), of what is no metal.
 
-
-def passed(appearance: Appearance, mu: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Light left at one direction: (below the coat, below coat and sheen, to the diffuse base)."""
+    Below the coat, below coat and sheen, and for the diffuse base.
+    """
     a, one = appearance, np.ones(())
-    coat = 1 - coat_share(a) * E_GGX(a.coat_roughness, mu, COAT_F0 * one, one)
-    strongest = float(a.sheen.max()) * (1 - a.metalness)
-    below = coat * (1 - strongest * lookup(load_tables().sheen, a.sheen_roughness, mu))
+    coat = 1 - a.coat * E_GGX((a.coat_roughness, 0.0), d, COAT_F0 * one, one)
+    sheen = lookup(load_tables().sheen, a.sheen_roughness, d[..., 2])
+    below = coat * (1 - float(a.sheen.max()) * sheen)
     f0 = np.asarray(a.f0)
-    base = below * (1 - E_GGX(np.sqrt(min(alphas(a))), mu, f0, F90(f0)))
+    base = below * (1 - E_GGX((a.roughness, a.anisotropy), d, f0, F90(f0)))
     return coat, below, base
 
 
 def coupling(appearance: Appearance) -> float:
     """Hemisphere mean of what reaches the diffuse base, by the midpoint rule in sqrt(mu)."""
     s = (np.arange(256) + 0.5) / 256
-    return float(4 * (passed(appearance, s**2)[2] * s**3).mean())
+    phi = 0.5 * np.pi * (np.arange(12) + 0.5) / 12
+    mu, turn = np.meshgrid(s**2, phi if appearance.anisotropy else phi[:1], indexing="ij")
+    side = np.sqrt(1 - mu**2)
+    d = np.stack([side * np.cos(turn), side * np.sin(turn), mu], axis=-1)
+    return float(4 * (passed(appearance, d)[2] * s[:, None] ** 3).mean())
 
 
 def specular(
-    roughness: tuple[float, float], v: FloatArray, l: FloatArray, f0: FloatArray, f90: FloatArray
+    lobe: tuple[float, float], v: FloatArray, l: FloatArray, f0: FloatArray, f90: FloatArray
 ) -> FloatArray:
-    """GGX lobe with all its bounces [1/sr], (..., 3); ``roughness``: the two alphas."""
+    """GGX lobe with all its bounces [1/sr], (..., 3); ``lobe``: roughness and anisotropy."""
     h = v + l
     h = h / np.linalg.norm(h, axis=-1, keepdims=True)
-    single = D_GGX(*roughness, h) * V_SmithGGXCorrelated(*roughness, v, l)
+    ax, ay = alphas(*lobe)
+    single = D_GGX(ax, ay, h) * V_SmithGGXCorrelated(ax, ay, v, l)
     LoH = np.minimum(1.0, (l * h).sum(axis=-1))
-    narrow = np.sqrt(min(roughness))
-    mean = E_mean(narrow)
-    again = E_lost(narrow, v[..., 2]) * E_lost(narrow, l[..., 2]) / (np.pi * (1 - mean))
+    mean = E_mean(*lobe)
+    again = E_lost(*lobe, v) * E_lost(*lobe, l) / (np.pi * (1 - mean))
     fresnel = F_Schlick(f0, f90, LoH[..., None])
     return fresnel * single[..., None] + F_multiple(f0, f90, mean) * again[..., None]
 
@@ -153,17 +189,17 @@ def evaluate(appearance: Appearance, v: FloatArray, l: FloatArray) -> FloatArray
     >>> bool(np.allclose(np.pi * evaluate(grey, up, up), 0.18))
     True
     """
-    a, m = appearance, appearance.metalness
-    coat_v, below_v, base_v = passed(a, v[..., 2])
-    coat_l, below_l, base_l = passed(a, l[..., 2])
-    f0 = (1 - m) * a.f0 + m * a.albedo
-    f90 = (1 - m) * F90(np.asarray(a.f0)) + m * F90(a.albedo)
-    base = np.minimum(below_v, below_l)[..., None] * specular(alphas(a), v, l, f0, f90)
-    diffuse = (1 - m) * a.albedo * (base_v * base_l / (np.pi * coupling(a)))[..., None]
-    fibres = np.minimum(coat_v, coat_l)[..., None] * (1 - m) * a.sheen * sheen(a, v, l)[..., None]
-    alpha = a.coat_roughness**2
-    coat = coat_share(a) * specular((alpha, alpha), v, l, np.full(3, COAT_F0), np.ones(3))
-    return np.asarray(base + diffuse + fibres + coat)
+    a, m, one = appearance, appearance.metalness, np.ones(3)
+    coat_v, below_v, base_v = passed(a, v)
+    coat_l, below_l, base_l = passed(a, l)
+    lobe = (a.roughness, a.anisotropy)
+    base = specular(lobe, v, l, a.f0 * one, F90(a.f0 * one))
+    dielectric = np.minimum(below_v, below_l)[..., None] * base
+    dielectric += a.albedo * (base_v * base_l / (np.pi * coupling(a)))[..., None]
+    dielectric += np.minimum(coat_v, coat_l)[..., None] * a.sheen * sheen(a, v, l)[..., None]
+    dielectric += a.coat * specular((a.coat_roughness, 0.0), v, l, COAT_F0 * one, one)
+    metal = specular(lobe, v, l, a.albedo, F90(a.albedo))
+    return np.asarray((1 - m) * dielectric + m * metal)
 
 
 def sheen(appearance: Appearance, v: FloatArray, l: FloatArray) -> FloatArray:

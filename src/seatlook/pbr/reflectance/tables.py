@@ -14,6 +14,8 @@ from seatlook.pbr.kernels.lookup import ROUGHNESS_LOW
 _FILE = Path(__file__).with_name("tables.npz")
 ROUGHNESSES = 80
 COSINES = 56
+# Roughness, anisotropy, azimuth and cosine of what anisotropy adds.
+STRETCHED = (16, 9, 9, 20)
 
 
 @functools.cache
@@ -28,9 +30,11 @@ def compute_tables(grid: int = 256) -> Tables:
 
     ``numpy.savez_compressed(file, **compute_tables()._asdict())`` writes the shipped file.
     """
-    from seatlook.pbr.kernels.tables import integrate
+    from seatlook.pbr.kernels.tables import integrate, integrate_stretched
 
-    return Tables(*integrate(ROUGHNESSES, COSINES, grid))
+    # Rounded, they are packed in a fifth of the space.
+    stretched = (field.round(5) for field in integrate_stretched(STRETCHED, max(16, grid // 4)))
+    return Tables(*integrate(ROUGHNESSES, COSINES, grid), *stretched)
 
 
 def roughness_nodes() -> FloatArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 
 import numpy as np
 import numpy.typing as npt
@@ -12,17 +12,23 @@ from seatlook.model import Camera, FloatArray, IntArray, Rig
 from seatlook.pbr.cache import Cache
 from seatlook.pbr.kernels import bvh, light, rays, specular_bounce
 from seatlook.pbr.kernels.light import Lights
+from seatlook.pbr.kernels.parts import in_parts
 from seatlook.pbr.kernels.specular_bounce import Reflection, Sources, Vertices
 from seatlook.pbr.kernels.stage import Look
+from seatlook.pbr.kernels.surface import mark_faces
 from seatlook.pbr.light.rig import pack_lights, sky_colour, sky_levels, sky_unhidden
 from seatlook.pbr.quality import Quality
+from seatlook.pbr.shading.looking import Hits, Lookout, Memory
+from seatlook.pbr.shading.sharing import Neighbours, neighbours
 from seatlook.pbr.shading.subdivision import boundary_edges
 from seatlook.pbr.shading.surface import Surface
 
 # Share of the sky seen by what lies below the cover; judgement.
 _HIDDEN_SKY = 0.3
-# Between neighbours whose open share differs by more, the vertex between them looks itself.
-_CONTRAST = 0.2
+# How often vertices share what they gathered over the half-space.
+_TIMES = 24
+# Vertices that are worth a thread.
+_LEAST = 512
 
 
 class IndirectLight:
@@ -34,7 +40,8 @@ class IndirectLight:
 
     def __init__(self, surface: Surface, tree: bvh.Bvh, cache: Cache) -> None:
         self.surface, self.tree, self.cache = surface, tree, cache
-        self.few = surface.solved
+        self.lookout = Lookout(surface)
+        self.few = self.lookout.few
 
     @functools.cached_property
     def _points(self) -> FloatArray:
@@ -63,19 +70,50 @@ class IndirectLight:
             key = ("sky", panorama.tobytes(), len(seen.which))
             whole = self.cache(key, lambda: sky_unhidden(rig, mesh.normals[seen.which]))
             rays.sky_seen(mesh.normals, seen.which, seen.hits, strata, panorama, whole, sky)
-        diffuse[:k] = self._spread(seen.which, sky)
+        diffuse[:k] = self.lookout.spread(seen.which, self._shared(seen, sky, _TIMES))
         # Of the sky below a seam, and where the foam is in sight, little is seen.
         diffuse[k:] = _HIDDEN_SKY * diffuse[: self.few].mean(axis=0)
         if level.bounces:
             lights = pack_lights(rig)
             sources = Sources(mesh, look, lights, self._lit(lights), diffuse)
-            sent = np.empty((len(seen.which), 3))
-            specular_bounce.first_bounce(sources, seen, strata, sent)
+            sent = self._first_bounce(sources, seen, level)
             diffuse[:k] += self._again(seen, sent, look.materials, level.bounces - 1)
             self._mirror(camera, ids, level, sources, open_, mirrored)
         if level.strata:
             open_[k:] = _HIDDEN_SKY
         return light.Indirect(diffuse, mirrored, open_, even, panorama)
+
+    def _first_bounce(self, sources: Sources, seen: Vertices, level: Quality) -> FloatArray:
+        """Luminance (m, 3) that the vertices which look get of the faces they see."""
+        sent = np.empty((len(seen.which), 3))
+
+        def gather(a: int, b: int) -> None:
+            part = Vertices(seen.which[a:b], seen.hits[a:b])
+            specular_bounce.first_bounce(sources, part, level.strata, sent[a:b])
+
+        in_parts(len(sent), gather, least=_LEAST)
+        return self._shared(seen, sent, _TIMES)
+
+    def _shared(self, seen: Vertices, values: FloatArray, times: int) -> FloatArray:
+        """Values (m, d) of vertices that look, held between those beside them, and shared."""
+        if (seen.hits == rays.OPEN).all():
+            return values
+        beside = self._neighbours(seen)
+        return beside.shared(beside.trimmed(values), times=times)
+
+    def _neighbours(self, seen: Vertices) -> Neighbours:
+        """Vertices that look, side by side, and how much the same they see."""
+
+        def make() -> tuple[Vertices, Neighbours]:
+            mesh, (which, hits) = self.surface.mesh, seen
+            points, around = self._points[which], np.empty(len(which))
+            rays.around(mesh, points, hits, around)
+            pairs = self.lookout.pairs(which)
+            return seen, neighbours(points, mesh.normals[which], pairs, around)
+
+        # What was seen is kept with it: as long as it lives no other has its number.
+        kept: tuple[Vertices, Neighbours] = self.cache(("neighbours", id(seen)), make)
+        return kept[1]
 
     def _lit(self, lights: Lights) -> FloatArray:
         """Share of each light that reaches each vertex, (lights, n)."""
@@ -90,13 +128,13 @@ class IndirectLight:
         self, seen: Vertices, sent: FloatArray, materials: np.ndarray, times: int
     ) -> FloatArray:
         """First bounce and those after it, at all refined vertices."""
-        total = every = self._spread(seen.which, sent)
+        total = every = self.lookout.spread(seen.which, sent)
         albedo = np.ascontiguousarray(materials["albedo"])
         for _ in range(times):
             padded = np.zeros(self.surface.mesh.vertices.shape)
             padded[: len(every)] = every
             rays.bounce(self.surface.mesh, seen.hits, albedo, padded, sent)
-            every = self._spread(seen.which, sent)
+            every = self.lookout.spread(seen.which, sent)
             total = total + every
         return total
 
@@ -111,12 +149,17 @@ class IndirectLight:
     ) -> None:
         """What reflections towards the camera see, into ``open_`` (n,) and ``mirrored`` (n, 3)."""
         k = self.surface.vertices
-        key = ("lobes", camera_key(camera), level.factor, level.strata)
         reflection = Reflection(np.array(camera.position), self._points, 3 * level.strata // 4)
-        seen = self.cache(key, lambda: self._lobes(reflection, ids))
+        seen = self._lobes(reflection, camera, ids, level, sources)
         share, sent = np.empty(len(seen.which)), np.empty((len(seen.which), 3))
-        specular_bounce.reflected(sources, seen, reflection, self._panel, share, sent)
-        both = self._spread(seen.which, np.column_stack([share, sent]))
+
+        def gather(a: int, b: int) -> None:
+            part = Vertices(seen.which[a:b], seen.hits[a:b])
+            specular_bounce.reflected(sources, part, reflection, self._panel, share[a:b], sent[a:b])
+
+        in_parts(len(sent), gather, least=_LEAST)
+        both = self._shared(seen, np.column_stack([share, sent]), 0)
+        both = self.lookout.spread(seen.which, both)
         open_[:k], mirrored[:k] = both[:, 0], both[:, 1:]
 
     @functools.cached_property
@@ -134,62 +177,68 @@ class IndirectLight:
 
         def look(which: IntArray) -> npt.NDArray[np.int32]:
             hits = np.empty((len(which), strata * strata), dtype=np.int32)
-            rays.gather(
-                self.tree, self.surface.faces, self._points, mesh.normals, which, strata, hits
+            start = (self.tree, self.surface.faces, self._points, mesh.normals)
+            in_parts(
+                len(which),
+                lambda a, b: rays.gather(*start, which[a:b], strata, hits[a:b]),
+                least=_LEAST,
             )
             return hits
 
         wanted = np.ones(self.surface.vertices, dtype=bool)
-        seen: Vertices = self.cache(("hits", strata), lambda: self._where_it_changes(look, wanted))
+        seen: Vertices = self.cache(
+            ("hits", strata), lambda: self.lookout.where_it_changes(look, _open, wanted)
+        )
         return seen
 
-    def _lobes(self, reflection: Reflection, ids: np.ndarray) -> Vertices:
-        m, mesh = self.surface.faces, self.surface.mesh
+    def _lobes(
+        self,
+        reflection: Reflection,
+        camera: Camera,
+        ids: np.ndarray,
+        level: Quality,
+        sources: Sources,
+    ) -> Vertices:
+        """What vertices in the picture see along reflections, by more where lit shares differ."""
+        m, mesh, lights = self.surface.faces, self.surface.mesh, sources.lights
 
         def look(which: IntArray) -> npt.NDArray[np.int32]:
             hits = np.empty((len(which), 2 * reflection.strata**2), dtype=np.int32)
-            specular_bounce.look_along_lobes(self.tree, m, reflection, mesh.normals, which, hits)
+            start = (self.tree, m, reflection, mesh.normals)
+            in_parts(
+                len(which),
+                lambda a, b: specular_bounce.look_along_lobes(*start, which[a:b], hits[a:b]),
+                least=_LEAST,
+            )
             return hits
 
-        # All refined vertices of the solver's faces that are in the picture.
+        lit = sources.lit[:, mesh.faces].mean(axis=2)
+
+        def shares(hits: Hits) -> FloatArray:
+            light = np.where(hits >= 0, lit[:, np.maximum(hits, 0)], 0.0).mean(axis=2)
+            return np.column_stack([_open(hits), light.T])
+
+        key = ("lobes", camera_key(camera), level.factor, level.strata)
+        places = tuple(x.tobytes() for x in (lights.near, lights.vector, lights.size))
+        memory = self.cache(key, lambda: Memory(self.surface.vertices))
+        seen: Vertices = self.cache(
+            (*key, *places),
+            lambda: self.lookout.where_it_changes(
+                functools.partial(memory, look), shares, self._in_picture(ids)
+            ),
+        )
+        return seen
+
+    def _in_picture(self, ids: np.ndarray) -> npt.NDArray[np.bool_]:
+        """All refined vertices of the solver's faces that are in the picture."""
+        m, mesh = self.surface.faces, self.surface.mesh
         seen = np.zeros(len(mesh.faces), dtype=bool)
-        seen[ids[ids >= 0]] = True
+        mark_faces(ids, seen)
         children = m // len(self.surface.coarse_faces)
         seen = seen[:m].reshape(-1, children).any(axis=1).repeat(children)
         wanted = np.zeros(self.surface.vertices, dtype=bool)
         wanted[mesh.faces[:m][seen]] = True
-        return self._where_it_changes(look, wanted)
-
-    def _where_it_changes(
-        self, look: Callable[[IntArray], npt.NDArray[np.int32]], wanted: np.ndarray
-    ) -> Vertices:
-        """Look from the solver's vertices, then from refined ones whose parents differ."""
-        which = [np.flatnonzero(wanted[: self.few])]
-        hits = [look(which[0])]
-        share = np.ones(self.few)
-        share[which[0]] = _open(hits[0])
-        for ends in self.surface.refined.parents:
-            a, b = share[ends[:, 0]], share[ends[:, 1]]
-            middle = 0.5 * (a + b)
-            here = wanted[len(share) : len(share) + len(ends)]
-            differ = np.flatnonzero((np.abs(a - b) > _CONTRAST) & here)
-            which.append(len(share) + differ)
-            hits.append(look(which[-1]))
-            middle[differ] = _open(hits[-1])
-            share = np.concatenate([share, middle])
-        return Vertices(np.concatenate(which), np.concatenate(hits))
-
-    def _spread(self, which: IntArray, values: FloatArray) -> FloatArray:
-        """Values (m, d) of the vertices ``which`` carried to all refined ones."""
-        out = np.zeros((self.few, values.shape[1]))
-        first = int(np.searchsorted(which, self.few))
-        out[which[:first]] = values[:first]
-        for ends in self.surface.refined.parents:
-            middle = 0.5 * (out[ends[:, 0]] + out[ends[:, 1]])
-            stop = int(np.searchsorted(which, len(out) + len(ends)))
-            middle[which[first:stop] - len(out)] = values[first:stop]
-            out, first = np.concatenate([out, middle]), stop
-        return out
+        return wanted
 
 
 def camera_key(camera: Camera) -> Hashable:
@@ -214,5 +263,5 @@ def from_afar(look: Look) -> np.ndarray:
     return out
 
 
-def _open(hits: npt.NDArray[np.int32]) -> FloatArray:
-    return np.asarray((hits == rays.OPEN).mean(axis=1))
+def _open(hits: Hits) -> FloatArray:
+    return np.asarray((hits == rays.OPEN).mean(axis=1)[:, None])

@@ -6,6 +6,7 @@ import functools
 from collections import OrderedDict
 from collections.abc import Hashable
 from dataclasses import replace
+from itertools import pairwise
 from types import MappingProxyType
 
 import numpy as np
@@ -18,6 +19,7 @@ from seatlook.pbr.cache import Cache
 from seatlook.pbr.kernels import bvh, coherent, shade, shadow, stage, stitch, surface
 from seatlook.pbr.light.exposure import ev100
 from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_of
+from seatlook.pbr.light.windows import with_windows
 from seatlook.pbr.picture import Image
 from seatlook.pbr.quality import Quality, quality_named, quality_within
 from seatlook.pbr.shading.indirect import IndirectLight, camera_key
@@ -81,9 +83,10 @@ class Studio:
             level = quality_within(target_error)
         look = look_of(self.solution.cover, appearance, self.thread)
         ids = self.faces(camera, level.factor)
-        visibility = self._visibility(rig, camera, level, ids)
+        ev, white, lux = ev100(rig), white_of(rig), lux_at_seat(rig)
+        own, rig = len(rig.lights), with_windows(rig)
+        visibility = self._visibility(rig, own, camera, level, ids)
         same = self._coherent(rig, camera, level, ids, visibility)
-        ev, white = ev100(rig), white_of(rig)
         radiance = np.empty((*camera.size[::-1], 3), dtype=np.float32)
         brightest = shade.shade(
             stage.Stage(
@@ -97,11 +100,11 @@ class Studio:
             _CARD * 2.5 * 2.0**ev / np.pi * white,
             radiance,
         )
-        _check(brightest, ids, visibility, camera)
+        _check(radiance, brightest, ids, visibility, camera)
         return Image(
             radiance=radiance,
             ev100=ev,
-            lux=MappingProxyType(lux_at_seat(rig)),
+            lux=MappingProxyType(lux),
             white=white,
             camera=camera,
             cover=self._cover(camera, level.factor),
@@ -141,34 +144,57 @@ class Studio:
         return cosine
 
     def _draw(self, camera: Camera, factor: int) -> npt.NDArray[np.int32]:
-        from seatlook.pbr._vtk import face_window
+        """Draw the cover, then the foam where it sticks out, each part after part."""
+        from seatlook.pbr._vtk import face_window, parts_of
 
-        mesh, m = self.surface.mesh, self.surface.opaque
+        mesh, m, window = self.surface.mesh, self.surface.opaque, face_window()
         size = (camera.size[0] * factor, camera.size[1] * factor)
-        window, eye = face_window(), eye_of(camera, factor)
-        ids = window.faces(mesh.vertices, mesh.faces[:m], camera, size)
-        if len(mesh.faces) > m:
-            foam = window.faces(mesh.vertices, mesh.faces[m:], camera, size)
-            foam = np.where(foam >= 0, foam + np.int32(m), foam)
-            cover_far, foam_far = np.empty(ids.shape), np.empty(ids.shape)
-            front = surface.distances(mesh, eye, ids, cover_far)
-            surface.distances(mesh, eye, foam, foam_far)
-            pressed = np.where(front, _COMPRESSED, 0.0)
-            ids = np.where(foam_far < cover_far - pressed, foam, ids)
-        if not (ids >= 0).any():
+        ids = np.empty(size[::-1], dtype=np.int32)
+        for part in parts_of(size):
+            seen = window.faces(mesh.vertices, mesh.faces[:m], camera, size, part)
+            ids[part.lines, part.columns] = seen
+        for part in parts_of(size) if len(mesh.faces) > m else ():
+            foam = window.faces(mesh.vertices, mesh.faces[m:], camera, size, part)
+            self._stick_out(
+                foam, ids[part.lines, part.columns], eye_of(camera, factor).part(*part[:2])
+            )
+        if ids.max() < 0:
             raise RenderError(f"camera {camera.name}: nothing is in the picture")
         return ids
 
+    def _stick_out(
+        self, foam: npt.NDArray[np.int32], ids: npt.NDArray[np.int32], eye: surface.Eye
+    ) -> None:
+        """Let foam into ``ids`` where it lies before the cover."""
+        foam = np.where(foam >= 0, foam + np.int32(self.surface.opaque), foam)
+        cover_far, foam_far = np.empty(ids.shape), np.empty(ids.shape)
+        front = surface.distances(self.surface.mesh, eye, ids, cover_far)
+        surface.distances(self.surface.mesh, eye, foam, foam_far)
+        pressed = np.where(front, _COMPRESSED, 0.0)
+        np.copyto(ids, foam, where=foam_far < cover_far - pressed)
+
     def _visibility(
-        self, rig: Rig, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
+        self, rig: Rig, own: int, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
     ) -> npt.NDArray[np.uint8]:
-        """Share of each light [1/255] seen by each sample, (lights, h, w)."""
-        stack = np.empty((len(rig.lights), *ids.shape), dtype=np.uint8)
-        for k, one in enumerate(rig.lights):
-            key = ("shadow", camera_key(camera), level.factor, level.rays, _light_key(one))
-            make = functools.partial(self._shadow, rig, k, camera, level, ids)
-            stack[k] = self._cache(key, make)
-        return stack
+        """Share of each light [1/255] seen by each sample, (lights, h, w).
+
+        The first ``own`` are cached one by one, the windows of a panorama together.
+        """
+
+        def seen(first: int, last: int) -> npt.NDArray[np.uint8]:
+            out = np.full((last - first, *ids.shape), 255, dtype=np.uint8)
+            for k in range(first, last):
+                self._shadow(rig, k, camera, level, ids, out[k - first])
+            return out
+
+        ends = [*range(own + 1), len(rig.lights)]
+        stacks = [np.empty((0, *ids.shape), dtype=np.uint8)]
+        for first, last in pairwise(ends):
+            lights = tuple(_light_key(one) for one in rig.lights[first:last])
+            key = ("shadow", camera_key(camera), level.factor, level.rays, lights)
+            if lights:
+                stacks.append(self._cache(key, functools.partial(seen, first, last)))
+        return stacks[1] if len(stacks) == 2 else np.concatenate(stacks)
 
     def _coherent(
         self,
@@ -192,11 +218,16 @@ class Studio:
         return np.asarray(self._cache(key, make))
 
     def _shadow(
-        self, rig: Rig, k: int, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
-    ) -> npt.NDArray[np.uint8]:
-        share = np.full(ids.shape, 255, dtype=np.uint8)
+        self,
+        rig: Rig,
+        k: int,
+        camera: Camera,
+        level: Quality,
+        ids: npt.NDArray[np.int32],
+        share: npt.NDArray[np.uint8],
+    ) -> None:
         if level.rays == 0:
-            return share
+            return
         shadow.shadows(
             self._bvh,
             self.surface.mesh,
@@ -208,7 +239,6 @@ class Studio:
             level.rays,
             share,
         )
-        return share
 
 
 def render(
@@ -297,9 +327,17 @@ def _with_normals(mesh: surface.Mesh, other: surface.Mesh) -> surface.Mesh:
     return mesh._replace(normals=other.normals)
 
 
-def _check(brightest: float, ids: np.ndarray, visibility: np.ndarray, camera: Camera) -> None:
+def _check(
+    radiance: np.ndarray,
+    brightest: float,
+    ids: np.ndarray,
+    visibility: np.ndarray,
+    camera: Camera,
+) -> None:
     if not np.isfinite(brightest):
         raise RenderError(f"camera {camera.name}: the picture holds values that are not finite")
+    if radiance.min() < 0:
+        raise RenderError(f"camera {camera.name}: the picture holds values below 0")
     if brightest <= 0 and (visibility[:, ids >= 0] > 0).any():
         raise RenderError(f"camera {camera.name}: the picture is black though a light reaches it")
 

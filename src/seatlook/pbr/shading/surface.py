@@ -30,6 +30,7 @@ class Surface:
     vertices, faces : int how many of the mesh's are the refined panels
     opaque : int          how many faces belong to the cover with its allowance turned in
     coarse_faces : (m, 3) the solver's faces
+    element_size : float  [m] of the solver's faces
     """
 
     mesh: Mesh
@@ -38,6 +39,15 @@ class Surface:
     faces: int
     opaque: int
     coarse_faces: IntArray
+    element_size: float
+
+    def faces_of_level(self, level: int) -> IntArray:
+        """Faces (m, 3) of the panels refined ``level`` times: each keeps a corner in each child."""
+        finer = len(self.refined.parents) - level
+        first = np.arange(len(self.coarse_faces) * 4**level) * 4**finer
+        step = (4**finer - 1) // 3
+        corners = [self.mesh.faces[first + k * step, k] for k in range(3)]
+        return np.column_stack(corners)
 
     @property
     def solved(self) -> int:
@@ -88,7 +98,7 @@ def drawn_surface(solution: Solution) -> Surface:
     k = len(mesh.faces)
     if cover.foam is not None:
         mesh = with_foam(mesh, cover.foam, len(cover.panel_names), cover=n)
-    return Surface(mesh, refined, n, m, k, np.array(cover.faces))
+    return Surface(mesh, refined, n, m, k, np.array(cover.faces), cover.element_size)
 
 
 def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
