@@ -105,11 +105,14 @@ class Picture:
 
 
 def png(pixels: npt.NDArray[np.uint8], run: str = "") -> bytes:
-    """PNG content of (h, w, 3) uint8 sRGB pixels, the same bytes for the same pixels and run."""
+    """PNG content of (h, w, 3) uint8 sRGB pixels, the same bytes for the same pixels and run.
+
+    The file says that it is sRGB, perceptual: without that a wide display shows other colours.
+    """
     buffer = io.BytesIO()
-    about = None
+    about = PngInfo()
+    about.add(b"sRGB", b"\0")
     if run:
-        about = PngInfo()
         about.add_text(RUN_KEY, run)
     Pillow.fromarray(pixels).save(buffer, format="PNG", compress_level=6, pnginfo=about)
     return buffer.getvalue()

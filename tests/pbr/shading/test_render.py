@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from PIL import Image as Pillow
 
 from seatlook.errors import InputError, RenderError
 from seatlook.model import Appearance, Camera, Light, Rig, bulb, named_view, sun
@@ -241,6 +242,8 @@ def test_saving_a_picture(card, tmp_path):
     image.save(tmp_path / "a.png")
     image.save(tmp_path / "a.npy")
     assert (tmp_path / "a.png").read_bytes() == image.to_png() == image._repr_png_()
+    with Pillow.open(tmp_path / "a.png") as picture:
+        assert picture.info["srgb"] == 0
     assert (np.load(tmp_path / "a.npy") == image.radiance).all()
     with pytest.raises(
         InputError, match=r"image file: got a\.jpg, expected a \.png, \.npy or \.exr"
