@@ -8,8 +8,8 @@ import shapely
 
 from seatlook import io
 from seatlook.errors import InputError, InputWarning
-from seatlook.flattening import cut_along, flatten
-from seatlook.flattening.files import write_flat_pattern
+from seatlook.flattening import cut_along, flatten, relax
+from seatlook.flattening.files import read_design, write_flat_pattern, write_panels
 from seatlook.flattening.surface import sides
 from support.seat_surfaces import cap, on_cap, undivided
 
@@ -33,6 +33,7 @@ def line(start, end, count=6):
     return np.linspace(start, end, count)
 
 
+PARTS = ("PANEL_1", "PANEL_2")
 DARTS = {
     "front": line((0.003, -HALF), (0.003, -0.05)),
     "rear": line((0.02, HALF), (-0.01, 0.04)),
@@ -117,6 +118,22 @@ def test_a_dart_where_there_is_nothing_to_take_up_stays_open(saddle):
     assert np.linalg.norm(a[0] - b[-1]) > 0.015 * result.seams[0].a
 
 
+@pytest.mark.parametrize("saddle", [False, True])
+@pytest.mark.parametrize("fabric", [None, "black-leather"])
+@pytest.mark.parametrize("ease", [0.0, 0.02, -0.03])
+def test_darts_settle_in_a_few_steps(monkeypatch, saddle, fabric, ease):
+    """What keeps the sides apart has directions: the panel took 180 steps to turn after them."""
+    monkeypatch.setattr(relax, "_MAX_STEPS", 20)
+    across = line((-HALF, -0.03), (HALF, 0.05), 12)
+    dart = line((0.0, -HALF), (0.01, -0.07))
+    surface = ball({"across": across, "dart": dart}, saddle=saddle)
+    cloth = {} if fabric is None else {n: io.read_material(fabric).fabric for n in PARTS}
+    seam = "across"
+    result = flatten(surface, fabrics=cloth, ease={seam: ease} if ease else {})
+    (eased,) = (s for s in result.seams if s.seam == seam)
+    assert eased.a == pytest.approx((1 + ease) * eased.b, rel=3e-4)
+
+
 def test_a_line_inside_a_panel_is_refused_with_its_place():
     with pytest.raises(InputError, match=r"panel PANEL: got A, inside it near \[\d+, 0, 29\d\] mm"):
         ball({"A": line((-0.05, 0), (0.05, 0))})
@@ -126,6 +143,19 @@ def test_a_line_inside_a_panel_is_refused_with_its_place():
 def test_an_end_just_before_a_line_is_no_dart(gap):
     with pytest.raises(InputError, match=r"curve\.A\.points_mm\[5\]: got an end \d\.\d mm away"):
         ball({"A": line((0, -HALF), (0, HALF - gap))})
+
+
+def test_darts_and_names_of_lines_stay_in_the_surface_that_is_written(tmp_path):
+    """Flattened again from its file, the surface gives the same pattern."""
+    lines = {**DARTS, "across": line((-HALF, 0.0), (HALF, 0.0), 12)}
+    surface = ball({k: v for k, v in lines.items() if k != "left"})
+    write_panels(surface, tmp_path / "panels.obj")
+    again = read_design(tmp_path / "panels.obj")
+    expected, result = flatten(surface), flatten(again)
+    assert [s.seam for s in result.seams] == [s.seam for s in expected.seams]
+    assert {"across", "front", "rear"} <= {s.seam for s in result.seams}
+    for a, b in zip(result.seams, expected.seams, strict=True):
+        assert (a.a, a.design) == pytest.approx((b.a, b.design), abs=2e-6)
 
 
 def test_a_pattern_with_darts_is_read_back(tmp_path):

@@ -109,7 +109,8 @@ def flatten_patch(
     area = face_areas(vertices, faces)
     laws: list[Law] = [_SHEET] if fabric is None else [FabricLaw(fabric), _CRUSHED]
     ties: list[Tie] = [] if openings is None else [openings]
-    if fabric is not None:
+    if fabric is not None or openings is not None:
+        # Both know directions of the plane; free to turn, the panel would follow them slowly.
         ties.append(_chord(x, float(area.sum())))
     nothing = _STRAINLESS * float(area.sum())
     left = None
