@@ -72,6 +72,61 @@ def test_a_line_that_goes_on_beyond_its_wire_is_hooked_in_part():
     assert hook.end == pytest.approx(0.8 * LENGTH, abs=0.02)
 
 
+def on_loop(low, high, *, lift=0.005):
+    """The piece of an oval between two angles, above it."""
+    turn = np.linspace(low, high, 60)
+    return np.column_stack([0.2 * np.cos(turn), 0.15 * np.sin(turn), np.full(60, lift)])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_loop_may_begin_anywhere_beside_its_seams(seed):
+    """Every junction lies below the ends of its seams, wherever and whichever way the loop runs."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 7))
+    first = rng.uniform(0.0, 2 * np.pi)
+    cuts = first + 2 * np.pi * (np.arange(count + 1) + rng.uniform(-0.2, 0.2, count + 1)) / count
+    cuts[-1] = cuts[0] + 2 * np.pi
+    loop = on_loop(0.0, 2 * np.pi * rng.choice([-1, 1]), lift=0.0)
+    loop[-1] = loop[0]
+    lines = {f"seam {k}": on_loop(*rng.permutation(cuts[k : k + 2])) for k in range(count)}
+    whole = mesh.length(loop)
+    (hook,) = hooks(lines, {"loop": loop})
+    assert set(hook.lines) == set(lines)
+    assert (hook.start, hook.end) == (0.0, None)
+    assert hook.junctions[-1] - hook.junctions[0] == pytest.approx(whole)
+    assert 0 <= hook.junctions[0] < whole
+    arc, at = mesh.arc_length(loop), np.array(hook.junctions) % whole
+    places = np.column_stack([np.interp(at, arc, column) for column in loop.T])
+    for line, ends in zip(hook.lines, itertools.pairwise(places), strict=True):
+        assert same_ends(lines[line], ends) < 0.006
+
+    # One seam left out: the chain begins behind the gap and goes on over the loop's end.
+    if count > 1:
+        lines.pop("seam 0")
+        (hook,) = hooks(lines, {"loop": loop})
+        assert set(hook.lines) == set(lines)
+        assert hook.junctions[-1] - hook.junctions[0] < whole - 0.02
+
+
+def same_ends(line, ends):
+    """How far the ends of a line are from two places, whichever way it runs."""
+    ways = (line[[0, -1]] - ends, line[[-1, 0]] - ends)
+    return min(np.linalg.norm(way, axis=1).max() for way in ways)
+
+
+@pytest.mark.parametrize("begin", [0.0, 1.3, 4.0])
+@pytest.mark.parametrize("way", [-1, 1])
+def test_rings_of_a_closed_seam_stand_right_above_a_loop(begin, way):
+    """One seam all round, as between a top and its boxing strip."""
+    loop = on_loop(begin, begin + way * 2 * np.pi, lift=0.0)
+    loop[-1] = loop[0]
+    seam = on_loop(0.7, 0.7 + 2 * np.pi)
+    (hook,) = hooks({"seam": seam}, {"loop": loop})
+    ring = rings_on([Line(np.arange(len(seam)), mesh.arc_length(seam))], hook, loop, seam)
+    np.testing.assert_allclose(ring.points.at(seam) - ring.target, [[0, 0, 0.005]] * len(ring.at),
+                               atol=2e-3)  # fmt: skip
+
+
 def chained(cuts, turned, junctions):
     """Lines of a chain on one array of points, some of them turned, and the rings on them."""
     x, lines, count = [], [], 0
@@ -134,3 +189,18 @@ def test_chains_that_cannot_be_are_refused(tmp_path, change, message):
     with pytest.raises(InputError) as caught:
         io.load_scene(path)
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(("last", "refused"), [(500.0, False), (501.0, True)])
+def test_places_on_a_loop_may_go_on_past_its_end_once_round(tmp_path, last, refused):
+    path = write_example_files(tmp_path) / "scene.toml"
+    path.write_text(
+        EXAMPLE.replace('wire = "wire left"', f'wire = "ring"\njunctions_mm = [100, {last}]', 1)
+    )
+    with (tmp_path / "curves.toml").open("a") as file:
+        file.write(
+            "[curve.ring]\npoints_mm = [[0,0,60],[100,0,60],[100,100,60],[0,100,60],[0,0,60]]"
+        )
+    with pytest.raises(InputError) as caught:  # the example's line is longer than this loop
+        io.load_scene(path)
+    assert ("400.0 mm long, once round at most" in str(caught.value)) == refused

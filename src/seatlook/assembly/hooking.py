@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -29,7 +29,7 @@ class _Beside:
     length: float  # of the line [m]
     low: float  # part of it that is beside the wire, along the line [m]
     high: float
-    start: float  # piece of the wire [m]
+    start: float  # piece of the wire [m]; on a closed one it may go on past the end
     end: float
     along: bool  # whether the line runs the wire's way
     away: float  # mean distance [m]
@@ -43,6 +43,10 @@ class _Beside:
     def after(self) -> float:
         """How much of the line [m] goes on beyond the wire's end."""
         return self.length - self.high if self.along else self.low
+
+    def moved(self, way: float) -> _Beside:
+        """The same line, its piece farther on along the wire [m]."""
+        return replace(self, start=self.start + way, end=self.end + way)
 
 
 def hooks_beside(
@@ -61,7 +65,8 @@ def hooks_beside(
     -------
     tuple of Hook
         In the order of the wires. A chain that has a gap along the wire makes two hooks. Their
-        junctions lie on the wire half way between the nearest places of two lines' ends.
+        junctions lie on the wire half way between the nearest places of two lines' ends. Those on a
+        closed wire go on past its end: it may begin anywhere beside its lines.
 
     Notes
     -----
@@ -80,12 +85,18 @@ def hooks_beside(
             beside[wire].append(found[wire])
     hooks = []
     for wire, pieces in beside.items():
-        chains = _chains(_nearest(pieces))
+        whole = _round(wires[wire])
+        chains = _chains(_nearest(pieces, whole), whole)
         words = place_words([lines[chain[0].line] for chain in chains])
         for chain, word in zip(chains, words, strict=True):
             name = f"{wire}.{word}" if word else wire
             hooks.append(_hook(name, wire, chain, wires[wire], stage))
     return tuple(hooks)
+
+
+def _round(wire: FloatArray) -> float | None:
+    """Length [m] after which a closed wire is where it was; None for one with ends."""
+    return mesh.length(wire) if mesh.is_closed(wire) else None
 
 
 def _beside(name: str, line: FloatArray, wire: FloatArray, reach: float) -> _Beside | None:
@@ -94,13 +105,14 @@ def _beside(name: str, line: FloatArray, wire: FloatArray, reach: float) -> _Bes
     arc = mesh.arc_length(line)
     points = np.column_stack([np.interp(along, arc, column) for column in line.T])
     away, place = mesh.nearest_places(wire, points)
-    ends = (place <= _AT_END) | (place >= mesh.arc_length(wire)[-1] - _AT_END)
-    # Beyond the end of a wire all places are its end: only the last of them is beside it.
-    inner = np.flatnonzero(~ends)
-    if len(inner) < 2:
-        return None
-    part = slice(max(inner[0] - 1, 0), min(inner[-1] + 2, _SAMPLES))
-    away, place, along = away[part], place[part], along[part]
+    whole = _round(wire)
+    if whole is None:
+        part = _between_ends(place, mesh.length(wire))
+        away, place, along = away[part], place[part], along[part]
+        if len(along) < 2:
+            return None
+    else:
+        place = np.unwrap(place, period=whole)
     piece = abs(place[-1] - place[0])
     run = along[-1] - along[0]
     straight = np.abs(np.diff(place)).sum() <= _AS_LONG[1] * piece
@@ -110,6 +122,9 @@ def _beside(name: str, line: FloatArray, wire: FloatArray, reach: float) -> _Bes
     if run < _LEAST * arc[-1]:
         return None
     start, end = sorted((float(place[0]), float(place[-1])))
+    if whole is not None:  # what begins where the loop does begins at 0, not at the end of it
+        turn = (start + _WHOLE) // whole * whole
+        start, end = start - turn, end - turn
     return _Beside(
         line=name,
         length=float(arc[-1]),
@@ -122,31 +137,52 @@ def _beside(name: str, line: FloatArray, wire: FloatArray, reach: float) -> _Bes
     )
 
 
-def _nearest(pieces: Sequence[_Beside]) -> list[_Beside]:
+def _between_ends(place: FloatArray, whole: float) -> slice:
+    """Which of the places (s,) [m] along an open wire are beside it.
+
+    Beyond the end of a wire all places are its end: only the last of them is beside it.
+    """
+    inner = np.flatnonzero((place > _AT_END) & (place < whole - _AT_END))
+    if len(inner) < 2:
+        return slice(0)
+    return slice(max(inner[0] - 1, 0), min(inner[-1] + 2, _SAMPLES))
+
+
+def _nearest(pieces: Sequence[_Beside], whole: float | None) -> list[_Beside]:
     """Of lines beside one piece of a wire, the nearest one; in order along the wire."""
     chosen: list[_Beside] = []
+    turns = (0.0,) if whole is None else (-whole, 0.0, whole)
     for piece in sorted(pieces, key=lambda p: p.away):
-        shared = [min(piece.end, c.end) - max(piece.start, c.start) for c in chosen]
+        shared = [
+            max(min(piece.end + t, c.end) - max(piece.start + t, c.start) for t in turns)
+            for c in chosen
+        ]
         long = [min(piece.end - piece.start, c.end - c.start) for c in chosen]
         if all(s <= _SHARED * n for s, n in zip(shared, long, strict=True)):
             chosen.append(piece)
     return sorted(chosen, key=lambda p: p.start)
 
 
-def _chains(pieces: Sequence[_Beside]) -> list[list[_Beside]]:
-    """Part pieces where the wire has a gap between them."""
+def _chains(pieces: Sequence[_Beside], whole: float | None) -> list[list[_Beside]]:
+    """Part pieces where the wire has a gap between them; a loop goes on from its end."""
     chains: list[list[_Beside]] = []
     for piece in pieces:
         if chains and piece.start - chains[-1][-1].end <= _GAP:
             chains[-1].append(piece)
         else:
             chains.append([piece])
+    if whole is not None and len(chains) > 1:
+        first = [piece.moved(whole) for piece in chains[0]]
+        if first[0].start - chains[-1][-1].end <= _GAP:
+            chains[-1].extend(first)
+            del chains[0]
     return chains
 
 
 def _hook(name: str, wire: str, chain: Sequence[_Beside], curve: FloatArray, stage: str) -> Hook:
     """The hook of a chain: junctions on the wire, and the part that lies beside it."""
     whole, total = mesh.length(curve), sum(piece.length for piece in chain)
+    loop = _round(curve)
     first, last = chain[0], chain[-1]
     before, after = (
         (first.low, total - last.high) if len(chain) == 1 else (first.before, last.after)
@@ -154,7 +190,10 @@ def _hook(name: str, wire: str, chain: Sequence[_Beside], curve: FloatArray, sta
     start = before if before > _WHOLE else 0.0
     end = total - after if after > _WHOLE else None
     inner = [(a.end + b.start) / 2 for a, b in pairwise(chain)]
-    ends = _ends(first.start, last.end, whole, (total if end is None else end) - start)
+    if loop is None:
+        ends = _ends(first.start, last.end, whole, (total if end is None else end) - start)
+    else:
+        ends = _ends_on_loop(first.start, last.end, loop)
     junctions = (ends[0], *inner, ends[1])
     alone = len(chain) == 1
     return Hook(
@@ -167,6 +206,14 @@ def _hook(name: str, wire: str, chain: Sequence[_Beside], curve: FloatArray, sta
         start=start,
         end=end,
     )
+
+
+def _ends_on_loop(start: float, end: float, whole: float) -> tuple[float, float]:
+    """The piece of a loop [m]; where it is nearly all of it, it ends where it begins."""
+    if abs(end - start - whole) > _GAP:
+        return max(start, 0.0), end
+    start = max((start + end - whole) / 2, 0.0)
+    return (0.0, whole) if start < _WHOLE else (start, start + whole)
 
 
 def _ends(start: float, end: float, whole: float, length: float) -> tuple[float, float]:

@@ -76,7 +76,8 @@ class Course:
     curve : (k, 3) float64 [m]
     before : (n + 1,) float64 [m]   length of the chain where the part of each line begins that is
                                     pulled, and where the last one ends
-    stops : (n + 1,) float64 [m]    places along the curve that these points go to
+    stops : (n + 1,) float64 [m]    places along the curve that these points go to; on a closed one
+                                    they may go on past its end
     smooth : whether the stretch of the lines changes gradually from one to the next
     """
 
@@ -92,6 +93,8 @@ class Course:
         if self.smooth:  # or the rings beside a junction would pull along the wire
             inside = np.clip(at, self.before[0], self.before[-1])
             place = PchipInterpolator(self.before, self.stops)(inside)
+        if mesh.is_closed(self.curve):
+            place = np.where(place > arc[-1], place - arc[-1], place)
         return np.column_stack([np.interp(place, arc, column) for column in self.curve.T])
 
     def turned(self) -> Course:

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
         arc_length as arc_length,
     )
     from seatlook.mesh.polyline import (
+        is_closed as is_closed,
+    )
+    from seatlook.mesh.polyline import (
         length as length,
     )
     from seatlook.mesh.polyline import (
@@ -91,6 +94,7 @@ _PUBLIC: dict[str, str] = {
     "hexagonal_bias": "seatlook.mesh.surface",
     "inner_sides": "seatlook.mesh.surface",
     "intersecting_pairs": "seatlook.mesh.intersection",
+    "is_closed": "seatlook.mesh.polyline",
     "length": "seatlook.mesh.polyline",
     "nearest_place": "seatlook.mesh.polyline",
     "nearest_places": "seatlook.mesh.polyline",
@@ -116,6 +120,7 @@ __all__ = [
     "hexagonal_bias",
     "inner_sides",
     "intersecting_pairs",
+    "is_closed",
     "length",
     "nearest_place",
     "nearest_places",

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError, Problem
 from seatlook.mesh.closest import closest_places
+from seatlook.mesh.polyline import is_closed
 from seatlook.mesh.surface import boundary_sides
 
 FloatArray = npt.NDArray[np.float64]
@@ -77,7 +78,7 @@ def _open_ends(
     """
     open_ends = []
     for name, line in laid.items():
-        if len(line) > 3 and np.linalg.norm(line[0] - line[-1]) <= 1e-6:
+        if is_closed(line):
             line[-1] = line[0]
             continue
         for at in (0, -1):

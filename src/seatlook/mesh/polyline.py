@@ -11,6 +11,8 @@ from seatlook.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
 
+_SAME = 1e-6  # m
+
 
 def distance_to_polyline(points: FloatArray, line: FloatArray) -> FloatArray:
     """Distance (m,) of points (m, d) to an open polyline (k, d), in its unit.
@@ -51,6 +53,18 @@ def nearest_places(line: FloatArray, points: FloatArray) -> tuple[FloatArray, Fl
 def segment_lengths(polyline: FloatArray) -> FloatArray:
     """Return the length (k - 1,) [m] of each segment of an open polyline (k, d)."""
     return np.asarray(np.linalg.norm(np.diff(polyline, axis=0), axis=1))
+
+
+def is_closed(polyline: FloatArray) -> bool:
+    """Return whether a polyline (k, d) [m] ends where it begins, within 1 um.
+
+    Examples
+    --------
+    >>> corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0]])
+    >>> is_closed(corners), is_closed(corners[:-1])
+    (True, False)
+    """
+    return len(polyline) > 3 and bool(np.linalg.norm(polyline[0] - polyline[-1]) <= _SAME)
 
 
 def arc_length(polyline: FloatArray) -> FloatArray:

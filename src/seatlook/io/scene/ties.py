@@ -13,8 +13,18 @@ import numpy as np
 from seatlook.io.scene.checks import chain_length
 from seatlook.io.schema import known
 from seatlook.io.toml import Document, Key
-from seatlook.mesh import length
-from seatlook.model import Foam, Frame, Hook, Limit, Pattern, Stage, ZoneBox, stage_units
+from seatlook.mesh import is_closed, length
+from seatlook.model import (
+    FloatArray,
+    Foam,
+    Frame,
+    Hook,
+    Limit,
+    Pattern,
+    Stage,
+    ZoneBox,
+    stage_units,
+)
 from seatlook.model.scene import SCORE_MEASURES
 from seatlook.model.zones import FREE_EDGE, built_in_zones, zones
 
@@ -71,7 +81,7 @@ def make_hooks(
                 chain=hook["chain"] or (),
                 wire=hook["wire"],
                 stage=hook["stage"],
-                junctions=_junctions(document, key, hook, len(lines), _length(foam, hook["wire"])),
+                junctions=_junctions(document, key, hook, len(lines), _curve(foam, hook["wire"])),
                 pitch=hook["pitch_mm"],
                 start=hook["from_mm"] or 0.0,
                 end=hook["to_mm"],
@@ -100,16 +110,18 @@ def _hooked_lines(
     return tuple(lines)
 
 
-def _length(foam: Foam | None, curve: str | None) -> float | None:
-    """Length [m] of a curve of the foam, if it is there."""
-    points = None if foam is None or curve is None else foam.curves.get(curve)
-    return None if points is None else length(points)
+def _curve(foam: Foam | None, curve: str | None) -> FloatArray | None:
+    """Points (k, 3) [m] of a curve of the foam, if it is there."""
+    return None if foam is None or curve is None else foam.curves.get(curve)
 
 
 def _junctions(
-    document: Document, key: Key, row: Row, lines: int, curve: float | None
+    document: Document, key: Key, row: Row, lines: int, curve: FloatArray | None
 ) -> tuple[float, ...]:
-    """Places along a curve [m] of a chain's lines: one more than lines, rising, on the curve."""
+    """Places along a curve [m] of a chain's lines: one more than lines, rising, on the curve.
+
+    On a closed curve they may go on past its end, not more than once round.
+    """
     values = row["junctions_mm"]
     if values is None:
         return ()
@@ -120,9 +132,13 @@ def _junctions(
         document.report((*key, "junctions_mm"), shown, expected)
     elif not all(a < b for a, b in pairwise(places)):
         document.report((*key, "junctions_mm"), shown, "places that rise along the curve")
-    elif curve is not None and places[-1] > curve + _ON_CURVE:
-        expected = f"places on the curve, which is {1e3 * curve:.1f} mm long"
-        document.report((*key, "junctions_mm"), shown, expected)
+    elif curve is not None:
+        long, closed = length(curve), is_closed(curve)
+        last = min(places[0], long) + long if closed else long
+        if places[-1] > last + _ON_CURVE:
+            expected = f"places on the curve, which is {1e3 * long:.1f} mm long"
+            expected += ", once round at most" if closed else ""
+            document.report((*key, "junctions_mm"), shown, expected)
     return places
 
 
@@ -157,7 +173,7 @@ def make_frames(
                 known(document, (*key, "edges"), edge, pattern.edges, what)
         if foam is not None:
             known(document, (*key, "curve"), frame["curve"], foam.curves, "a curve of the foam")
-        edges, curve = frame["edges"] or (), _length(foam, frame["curve"])
+        edges, curve = frame["edges"] or (), _curve(foam, frame["curve"])
         places = _junctions(document, key, frame, len(edges), curve)
         values = {name: value for name, value in frame.items() if name != "junctions_mm"}
         frames.append(Frame(**values, junctions=places))
