@@ -270,13 +270,15 @@ def test_written_surface_reads_back(tmp_path):
     panel = np.array([0, 0, 1, 1, 2, 2, 0, 1, 2, 0, 1, 2])
     order = np.argsort(panel, kind="stable")
     surface = GroupedMesh(
-        np.asarray(mesh.vertices), np.asarray(mesh.faces), panel, ("INSERT", "LH side", "REAR")
-    )
+        np.asarray(mesh.vertices), np.asarray(mesh.faces), panel, ("INSERT", "LH side", "REAR"),
+        {tuple(sorted(mesh.faces[0][:2].tolist())): "piping top"},
+    )  # fmt: skip
     write_surface(surface, tmp_path / "s.obj")
     again = read_surface(tmp_path / "s.obj", unit="mm")
     assert again.panel_names == surface.panel_names
     assert np.array_equal(again.faces, surface.faces[order])
     assert np.array_equal(again.panel, panel[order])
+    assert again.seam_lines == surface.seam_lines
     assert np.abs(again.vertices - surface.vertices).max() < 1e-15
 
 
@@ -290,6 +292,18 @@ def test_obj_dialects(write):
     assert surface.faces.tolist() == [[0, 1, 2], [0, 2, 3], [0, 2, 3]]
     assert surface.panel.tolist() == [0, 0, 1]
     assert surface.vertices[2].tolist() == [0.1, 0.1, 0.0]
+    assert surface.seam_lines == {}
+
+
+def test_lines_along_edges_of_faces_are_seam_lines(write):
+    """They are called after their group; what is no edge of a face is no seam."""
+    text = (
+        "v 0 0 0\nv 100 0 0\nv 100 100 0\nv 0 100 0\nv 0 0 0\nl 1 2\n"
+        "g A\nf 1 2 3\nf 5 3 4\ng a dart\nl 3/1 -1\ng else\nl 2 4\nl 1 2 3\n"
+    )
+    surface = read_surface(write("s.obj", text), unit="mm")
+    assert surface.panel_names == ("A",)
+    assert surface.seam_lines == {(0, 2): "a dart", (0, 1): "else", (1, 2): "else"}
 
 
 def test_objects_are_panels_where_an_obj_has_no_groups(write):
@@ -323,7 +337,7 @@ def test_a_design_surface_of_any_unit_and_axis(tmp_path):
 
 
 def test_bad_obj_names_every_line(write, problems):
-    text = "v 0 0 0\nv 1 nan 0\nv 1 x 0\nf 1 2 3\ng A\nf 1 2\nf 1 2 9\nf a b c\n"
+    text = "v 0 0 0\nv 1 nan 0\nv 1 x 0\nf 1 2 3\ng A\nf 1 2\nf 1 2 9\nf a b c\nl 1\nl 1 9\n"
     assert problems(read_surface, write("s.obj", text), unit="mm") == [
         "s.obj:2: v: got '1 nan 0', expected three finite numbers",
         "s.obj:3: v: got '1 x 0', expected three finite numbers",
@@ -331,6 +345,8 @@ def test_bad_obj_names_every_line(write, problems):
         "s.obj:6: f: got '1 2', expected three or more vertices from 1 to 3",
         "s.obj:7: f: got '1 2 9', expected three or more vertices from 1 to 3",
         "s.obj:8: f: got 'a b c', expected vertex numbers",
+        "s.obj:9: l: got '1', expected two or more vertices from 1 to 3",
+        "s.obj:10: l: got '1 9', expected two or more vertices from 1 to 3",
     ]
 
 

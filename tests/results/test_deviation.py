@@ -1,6 +1,7 @@
 """The finished shape against its design: hand-computed offsets, rims, sides, seam lines."""
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -112,6 +113,21 @@ def test_seam_line_is_off_by_its_shift():
     (tilted,) = seam_lines(finished(lambda x, y: 0.05 * (y + 0.06)), level())
     assert tilted.mean == pytest.approx(0.003, rel=0.01)
     assert tilted.largest == pytest.approx(0.006)
+
+
+def test_a_seam_of_a_panel_with_itself_is_compared_with_the_lines_in_it():
+    """As a dart is: here both sheets are one panel, with a line drawn in its middle."""
+    s = finished(lambda x, y: 0 * x, shift=0.003)
+    names = ("P", "P")
+    s = dataclasses.replace(s, cover=dataclasses.replace(s.cover, panel_names=names))
+    whole = level(names=("P", "OTHER"))
+    whole = dataclasses.replace(whole, panel=np.zeros_like(whole.panel))
+    assert seam_lines(s, whole)[0].mean is None
+    middle = np.flatnonzero(np.abs(whole.vertices[:, 0]) < 1e-9)
+    middle = middle[np.argsort(whole.vertices[middle, 1])].tolist()
+    lines = {tuple(sorted(pair)): "dart" for pair in itertools.pairwise(middle)}
+    (row,) = seam_lines(s, dataclasses.replace(whole, seam_lines=lines))
+    assert (row.mean, row.largest) == pytest.approx((0.003, 0.003))
 
 
 def test_seam_without_a_line_on_the_design_is_named_without_a_figure():

@@ -57,7 +57,7 @@ def flatten_surface(
     """Flatten the panels of a design surface, and write a pattern of them.
 
     Leaves ``pattern.dxf``, ``seams.toml``, ``placement.toml``, ``seam-lengths.csv``, pictures of
-    the strain, and ``panels.obj``: the surface with a group per panel.
+    the strain, and ``panels.obj``: the surface with a group per panel and per seam line.
 
     Raises
     ------
@@ -104,8 +104,9 @@ def read_design(
 
 
 def write_panels(form: DesignSurface, path: Path) -> None:
-    """Write a design surface as OBJ, a group per panel."""
-    io.write_surface(io.GroupedMesh(form.vertices, form.faces, form.panel, form.panel_names), path)
+    """Write a design surface as OBJ, a group per panel, and one per line it was cut along."""
+    rows = (form.vertices, form.faces, form.panel, form.panel_names, form.seam_lines)
+    io.write_surface(io.GroupedMesh(*rows), path)
 
 
 def write_flat_pattern(flat: Flattened, out: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
@@ -156,6 +156,7 @@ class Design:
     vertices : (n, 3) float64 [m]; faces : (m, 3) int64, normals outward; need not be closed
     panel : (m,) int64, index into ``panel_names``; two panels share the vertices of their seam
     visible : whether it is the visible side that was drawn, not the middle of the cover
+    seam_lines : edge, smaller vertex first -> name of the line along it, such as a dart's
     """
 
     vertices: FloatArray
@@ -163,6 +164,7 @@ class Design:
     panel: IntArray
     panel_names: tuple[str, ...]
     visible: bool = False
+    seam_lines: Mapping[tuple[int, int], str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         floats(self, "vertices", None, 3)

@@ -63,9 +63,12 @@ def deviation(solution: Solution, design: Design) -> FloatArray:
 
 
 def seam_lines(solution: Solution, design: Design) -> tuple[SeamLine, ...]:
-    """Compare every seam with the border that its panels have on the design surface."""
+    """Compare every seam with the border that its panels have on the design surface.
+
+    A dart, or the closing seam of a ring, is compared with the lines drawn inside its panel.
+    """
     cover = solution.cover
-    pairs, labels = border_segments(design.faces, design.panel)
+    pairs, labels = _lines_of(design)
     number = {name: i for i, name in enumerate(design.panel_names)}
     rows = []
     for seam in cover.stitchings:
@@ -76,6 +79,20 @@ def seam_lines(solution: Solution, design: Design) -> tuple[SeamLine, ...]:
         on_seam = np.array([tuple(pair) in neighbours for pair in labels.tolist()], dtype=bool)
         rows.append(_seam_line(seam, solution.positions, design, pairs[on_seam]))
     return tuple(rows)
+
+
+def _lines_of(design: Design) -> tuple[IntArray, IntArray]:
+    """Edges (e, 2) on borders between panels and on lines in them, and the two panels (e, 2)."""
+    pairs, labels = border_segments(design.faces, design.panel)
+    ends = np.sort(np.stack([design.faces, np.roll(design.faces, -1, axis=1)], axis=2), axis=2)
+    owner = np.repeat(design.panel, 3).tolist()
+    panel = dict(zip(map(tuple, ends.reshape(-1, 2).tolist()), owner, strict=True))
+    between = {tuple(pair) for pair in pairs.tolist()}
+    drawn = [edge for edge in design.seam_lines if edge in panel and edge not in between]
+    if not drawn:
+        return pairs, labels
+    own = np.array([panel[edge] for edge in drawn], dtype=np.int64)
+    return np.concatenate([pairs, drawn]), np.concatenate([labels, np.column_stack([own, own])])
 
 
 def _seam_line(seam: Stitching, x: FloatArray, design: Design, line: IntArray) -> SeamLine:

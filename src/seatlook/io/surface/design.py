@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -25,12 +27,14 @@ class GroupedMesh(NamedTuple):
     ----------
     vertices : (n, 3) [m]; faces : (m, 3) int64
     panel : (m,) int64, index into ``panel_names``
+    seam_lines : edge, smaller vertex first -> name of the line that is drawn along it
     """
 
     vertices: FloatArray
     faces: IntArray
     panel: IntArray
     panel_names: tuple[str, ...]
+    seam_lines: Mapping[tuple[int, int], str] = MappingProxyType({})
 
 
 @reader("a design surface")
@@ -40,6 +44,8 @@ def read_surface(
     """Read a design surface whose file names the panel of each face.
 
     In OBJ that is ``g NAME``, or ``o NAME`` in a file without ``g``; in glTF the name of the node.
+    Lines of an OBJ (``l``) that run along edges of its faces are seam lines, called after their
+    group; others count for nothing.
     STL and PLY know no names. Polygons are cut into fans. The surface need not be closed. Panels
     that were written with corners of their own share them again where they agree within 1 um.
 
@@ -66,7 +72,9 @@ def read_surface_axes(
     drawn = _read_obj(path, ungrouped) if path.suffix.lower() == ".obj" else _named(path, ungrouped)
     axes = file_axes(path, drawn.vertices[np.unique(drawn.faces)], unit, up)
     vertices, corner = _welded(axes.world(drawn.vertices))
-    return drawn._replace(vertices=vertices, faces=corner[drawn.faces]), axes
+    faces = corner[drawn.faces]
+    drawn_lines = {_ends(*corner[list(ends)].tolist()): n for ends, n in drawn.seam_lines.items()}
+    return drawn._replace(vertices=vertices, faces=faces, seam_lines=drawn_lines), axes
 
 
 def _named(path: Path, ungrouped: str | None) -> GroupedMesh:
@@ -119,12 +127,13 @@ class _ObjReader:
         self.vertices: list[list[float]] = []
         self.faces: list[list[int]] = []
         self.panel: list[int] = []
+        self.lines: dict[tuple[int, int], str] = {}
         self.names: list[str] = []
         self.errors: list[InputError] = []
         self.group: int | None = None
 
     def read(self, number: int, words: list[str]) -> None:
-        if not words or words[0] not in ("v", "f", self.group_word):
+        if not words or words[0] not in ("v", "f", "l", self.group_word):
             return
         kind, values = words[0], words[1:]
         try:
@@ -132,6 +141,8 @@ class _ObjReader:
                 self._vertex(values)
             elif kind == self.group_word:
                 self.open_group(" ".join(values))
+            elif kind == "l":
+                self._line(values)
             else:
                 self._face(values)
         except ValueError as error:
@@ -157,17 +168,26 @@ class _ObjReader:
             self.names.append(name)
         self.group = self.names.index(name)
 
-    def _face(self, values: list[str]) -> None:
-        count = len(self.vertices)
-        if self.group is None:
-            raise ValueError("a group (g PANEL) before the first face")
+    def _numbers(self, values: list[str], least: str, count: int) -> list[int]:
+        known = len(self.vertices)
         try:
             corners = [int(v.split("/")[0]) for v in values]
         except ValueError as error:
             raise ValueError("vertex numbers") from error
-        corners = [c - 1 if c > 0 else count + c for c in corners]
-        if len(corners) < 3 or not all(0 <= c < count for c in corners):
-            raise ValueError(f"three or more vertices from 1 to {count}")
+        corners = [c - 1 if c > 0 else known + c for c in corners]
+        if len(corners) < count or not all(0 <= c < known for c in corners):
+            raise ValueError(f"{least} or more vertices from 1 to {known}")
+        return corners
+
+    def _line(self, values: list[str]) -> None:
+        if self.group is not None:
+            points = self._numbers(values, "two", 2)
+            self.lines |= {_ends(a, b): self.names[self.group] for a, b in pairwise(points)}
+
+    def _face(self, values: list[str]) -> None:
+        if self.group is None:
+            raise ValueError("a group (g PANEL) before the first face")
+        corners = self._numbers(values, "three", 3)
         for b, c in pairwise(corners[1:]):
             self.faces.append([corners[0], b, c])
             self.panel.append(self.group)
@@ -178,12 +198,18 @@ class _ObjReader:
         if not self.faces:
             raise InputError.single("f", got="no face", expected="faces", file=self.path)
         used = sorted(set(self.panel))
+        sides = {_ends(a, b) for f in self.faces for a, b in pairwise([*f, f[0]])} & {*self.lines}
         return GroupedMesh(
             vertices=np.array(self.vertices),
             faces=np.array(self.faces, dtype=np.int64),
+            seam_lines={ends: name for ends, name in self.lines.items() if ends in sides},
             panel=np.searchsorted(used, self.panel).astype(np.int64),
             panel_names=tuple(self.names[i] for i in used),
         )
+
+
+def _ends(a: int, b: int) -> tuple[int, int]:
+    return (a, b) if a < b else (b, a)
 
 
 def _welded(vertices: FloatArray) -> tuple[FloatArray, IntArray]:
@@ -197,11 +223,17 @@ def _welded(vertices: FloatArray) -> tuple[FloatArray, IntArray]:
 
 
 def write_surface(mesh: GroupedMesh, path: Path) -> None:
-    """Write a design surface as OBJ in millimetres, one group per panel, all digits kept."""
+    """Write a design surface as OBJ in millimetres, all digits kept.
+
+    One group per panel and per seam line.
+    """
     rows = [_vertex_rows(mesh.vertices)]
     for index, name in enumerate(mesh.panel_names):
         rows.append(f"g {name}")
         rows.append(_face_rows(mesh.faces[mesh.panel == index]))
+    for name in sorted(set(mesh.seam_lines.values())):
+        rows.append(f"g {name}")
+        rows += [f"l {a + 1} {b + 1}" for (a, b), own in mesh.seam_lines.items() if own == name]
     write_text(path, "\n".join(rows) + "\n")
 
 
