@@ -16,11 +16,6 @@ from seatlook.flattening.strain_map import write_strain_maps
 from support.curved_panels import half_ellipsoid
 from support.seat_surfaces import box_cushion, cap, on_cap, undivided
 
-MATERIALS = (
-    "leather-laminate", "black-leather", "bright-leather", "pvc", "suede", "suede-laminate",
-    "woven",
-)  # fmt: skip
-
 
 @pytest.fixture(autouse=True)
 def quiet():
@@ -56,7 +51,7 @@ def test_domes_and_saddles_of_any_face_size(size, saddle):
     sound(surface, flatten(surface))
 
 
-@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("material", io.list_materials())
 def test_a_boxed_cushion_of_every_material(material):
     surface = opened(box_cushion(size=0.015))
     fabric = io.read_material(material).fabric

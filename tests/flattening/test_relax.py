@@ -3,6 +3,7 @@ import pytest
 
 from seatlook import mesh
 from seatlook.flattening.face_map import stretches
+from seatlook.flattening.newton import _Matrix
 from seatlook.flattening.relax import HeldEdges, flatten_patch
 from seatlook.flattening.start import conformal_map
 from support.rolls import rolled, sheet
@@ -95,3 +96,24 @@ def test_a_closed_dome_is_flattened_with_great_strain():
     assert (mesh.face_vectors(flat, faces)[:, 2] > 0).all()
     strain = stretches(ball, faces, flat) - 1
     assert 0.5 < strain.max() < 8
+
+
+def test_steps_go_down_where_the_curvature_is_not_positive():
+    """Newton's own step leads to a saddle there; so little is left out that the step is long."""
+    faces = np.array([[0, 1, 2]])
+    matrix = _Matrix(3, faces, [])
+    rng = np.random.default_rng(0)
+    root = rng.normal(size=(6, 6))
+    above, weak = root @ root.T, rng.normal(size=6)
+    weak /= np.linalg.norm(weak)
+    limit = 1 / (weak @ np.linalg.solve(above, weak))  # so much below 0 makes it singular
+    b = rng.normal(size=(3, 2))
+    for size in (0.5, 1.01, 1.3):
+        below = -size * limit * np.outer(weak, weak)
+        blocks = [[m.reshape(3, 2, 3, 2).swapaxes(1, 2).reshape(-1, 4)] for m in (above, below)]
+        step, share = matrix.descent(*blocks, b, 0.0)
+        assert (share > 0) == (size > 1)
+        assert share < 1
+        assert (b * step).sum() > 0
+        expected = np.linalg.solve(above + (1 - share) * below, b.ravel())
+        np.testing.assert_allclose(step.ravel(), expected, rtol=1e-5)

@@ -9,7 +9,6 @@ from seatlook.errors import InputWarning
 from seatlook.flattening import flatten
 from seatlook.seats import SHAPES, design_surface, shaped
 
-MATERIALS = ("black-leather", "bright-leather", "leather-laminate", "pvc", "suede", "woven")
 SIZES = (0.006, 0.008, 0.010, 0.012)
 
 pytestmark = pytest.mark.validate
@@ -37,8 +36,8 @@ def test_at_every_size(surfaces, size):
     assert max(strains) < 0.08
 
 
-@pytest.mark.parametrize("size", [0.008, 0.012])
-@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("material", io.list_materials())
 def test_in_every_material(surfaces, size, material):
     surface = surfaces[size]
     fabric = io.read_material(material).fabric

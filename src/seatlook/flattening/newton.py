@@ -8,14 +8,16 @@ from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from seatlook.flattening.face_map import Gradient, determinants, largest_step
 from seatlook.model import FloatArray, IntArray
 
 _DAMPING = 1e-9  # share of the mean stiffness: rigid motions cost nothing
 _SMALLEST_SCALE = 1e-10
-_LEAST_WHOLE = 0.1  # of a step by the whole curvature, negative parts too, that is good enough
+# Share of the curvature's negative parts that is left out, and by how much it grows and shrinks.
+_LEAST_SHARE, _SHARE_STEP = 1 / 64, 4.0
+_SHORT = 0.1  # of a step: its curvature was no good guide
 _DESCENT = 1e-4  # share of the energy that the slope promises, to be won at least (Armijo)
 _HALF = np.sqrt(0.5)
 
@@ -119,28 +121,29 @@ def minimise(
     problem = _Problem(gradient, area, tuple(laws), tuple(ties))
     matrix = _Matrix(len(x), gradient.faces, [tie.vertices for tie in ties])
     value = problem.value(x)
-    whole, step = True, np.zeros_like(x)
+    share, step = 0.0, np.zeros_like(x)
     for _ in range(steps):
-        slope, blocks, springs = problem.derivatives(x, whole=whole)
-        step = matrix.solve(blocks, springs, -slope)
+        slope, above, below = problem.derivatives(x)
+        step, share = matrix.descent(above, below, -slope, share)
         promise = float((slope * step).sum())
         scale = largest_step(x, step, gradient) if promise < 0 else 0.0
         while (new := problem.value(x + scale * step)) > value + _DESCENT * scale * promise:
             scale /= 2
             if scale < _SMALLEST_SCALE:
-                break
-        if scale < (_LEAST_WHOLE if whole else _SMALLEST_SCALE):
-            if not whole:
                 return x, None  # rounding hides what a smaller step would win
-            whole = False
-            continue
-        # Far from rest the curvature without its negative parts is the better guide.
-        whole = scale == 1.0
+        if scale == 1.0:
+            share = share / _SHARE_STEP if share > _LEAST_SHARE else 0.0
+        elif scale < _SHORT:
+            share = _larger(share)
         x = x + scale * step
         won, value = value - new, new
         if enough(won, value, scale * float(np.abs(step).max())):
             return x, None
     return x, step
+
+
+def _larger(share: float) -> float:
+    return min(1.0, max(_LEAST_SHARE, _SHARE_STEP * share))
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,36 +160,45 @@ class _Problem:
         energy = sum(float(self.area @ law.energy(F)) for law in self.laws)
         return energy + sum(float(tie.energy(_span(x, tie)).sum()) for tie in self.ties)
 
-    def derivatives(
-        self, x: FloatArray, *, whole: bool
-    ) -> tuple[FloatArray, FloatArray, list[FloatArray]]:
-        """Return slope (n, 2), faces' blocks (m, 3, 3, 2, 2) and those of the ties.
-
-        The blocks are the curvature, ``whole`` or without its negative parts.
-        """
+    def derivatives(self, x: FloatArray) -> tuple[FloatArray, _Blocks, _Blocks]:
+        """Return slope (n, 2), and of the curvature the parts above 0 and below."""
         F, m = self.gradient.at(x), len(self.area)
         across = self.gradient.slopes.transpose(0, 2, 1)
-        nodal, blocks = np.zeros((m, 2, 3)), np.zeros((m, 6, 6))
+        nodal, stiff, soft = np.zeros((m, 2, 3)), np.zeros((m, 6, 6)), np.zeros((m, 6, 6))
         for law in self.laws:
             pushed, modes, size = law.derivatives(F)
             nodal += pushed @ across
-            size = size if whole else np.maximum(size, 0.0)
-            if size.any():
-                wide = (modes.reshape(m, 8, 2) @ across).reshape(m, 4, 6)
-                blocks += wide.transpose(0, 2, 1) @ (size[:, :, None] * wide)
-        nodal *= self.area[:, None, None]
-        blocks *= self.area[:, None, None]
+            wide = (modes.reshape(m, 8, 2) @ across).reshape(m, 4, 6)
+            for blocks, part in ((stiff, np.maximum(size, 0.0)), (soft, np.minimum(size, 0.0))):
+                rows = np.flatnonzero(part.any(axis=1))
+                own = wide[rows]
+                blocks[rows] += own.transpose(0, 2, 1) @ (part[rows, :, None] * own)
+        weight = self.area[:, None, None]
+        nodal, stiff, soft = weight * nodal, weight * stiff, weight * soft
         index = self.gradient.faces.ravel()
         slope = np.zeros_like(x)
         for i in (0, 1):
             slope[:, i] = np.bincount(index, nodal[:, i].ravel(), minlength=len(x))
-        springs = []
+        above, below = _of_faces(stiff), _of_faces(soft)
         for tie in self.ties:
-            pull, stiff, soft = tie.derivatives(_span(x, tie))
+            pull, hard, weak = tie.derivatives(_span(x, tie))
             np.add.at(slope, tie.vertices[:, 0], -pull)
             np.add.at(slope, tie.vertices[:, 1], pull)
-            springs.append(stiff + soft if whole else stiff)
-        return slope, blocks.reshape(m, 2, 3, 2, 3).transpose(0, 2, 4, 1, 3), springs
+            above.append(_of_pairs(hard))
+            below.append(_of_pairs(weak))
+        return slope, above, below
+
+
+_Blocks = list[FloatArray]  # 2 x 2 blocks as rows (k, 4): of faces, then of each tie's pairs
+
+
+def _of_faces(blocks: FloatArray) -> _Blocks:
+    return [blocks.reshape(-1, 2, 3, 2, 3).transpose(0, 2, 4, 1, 3).reshape(-1, 4)]
+
+
+def _of_pairs(spring: FloatArray) -> FloatArray:
+    signs = np.array([1.0, -1.0, -1.0, 1.0])[:, None, None]
+    return np.asarray((signs * spring[:, None]).reshape(-1, 4))
 
 
 def _span(x: FloatArray, tie: Tie) -> FloatArray:
@@ -208,22 +220,37 @@ class _Matrix:
         self._start = np.searchsorted(row, np.arange(n + 1))
         self._size = 2 * n
 
-    def solve(self, blocks: FloatArray, springs: Sequence[FloatArray], b: FloatArray) -> FloatArray:
-        """Return the solution (n, 2) for a right side (n, 2)."""
-        signs = np.array([1.0, -1.0, -1.0, 1.0])[:, None, None]
-        entries = [blocks.reshape(-1, 4)]
-        entries += [(signs * spring[:, None]).reshape(-1, 4) for spring in springs]
-        entry = np.concatenate(entries)
+    def descent(
+        self, above: _Blocks, below: _Blocks, b: FloatArray, share: float
+    ) -> tuple[FloatArray, float]:
+        """Return the solution (n, 2) for a right side (n, 2), and the share that it took.
+
+        The share of the negative parts that is left out grows until the matrix has no direction of
+        negative curvature: along such a one steps would lead to a saddle and leave it slowly. With
+        little left out they are long there.
+        """
+        stiff, soft = self._sums(above), self._sums(below)
+        while True:
+            factor = self._factor(stiff + (1.0 - share) * soft)
+            if share == 1.0 or (factor.U.diagonal() > 0).all():
+                return np.asarray(factor.solve(b.ravel()).reshape(-1, 2)), share
+            share = _larger(share)
+
+    def _sums(self, blocks: _Blocks) -> FloatArray:
+        """Add up the blocks (k, 4) of each place."""
         count = len(self._column)
-        data = np.column_stack([np.bincount(self._place, e, minlength=count) for e in entry.T])
+        entries = np.concatenate(blocks).T
+        return np.column_stack([np.bincount(self._place, e, minlength=count) for e in entries])
+
+    def _factor(self, data: FloatArray) -> SuperLU:
         rows = sp.bsr_array(
             (data.reshape(-1, 2, 2), self._column, self._start), shape=(self._size, self._size)
         ).tocsr()
         damping = sp.identity(self._size, format="csc") * (_DAMPING * rows.diagonal().mean())
         # Symmetric, so its rows are its columns.
         matrix = sp.csc_array((rows.data, rows.indices, rows.indptr), shape=rows.shape) + damping
-        factor = splu(
+        # Pivots stay on the diagonal: those below 0 are as many as the negative directions.
+        return splu(
             matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
         )  # fmt: skip
-        return np.asarray(factor.solve(b.ravel()).reshape(-1, 2))
