@@ -270,7 +270,7 @@ def test_recipe_export(clone):
     clone.insert("io/export/writers.py", '".vtp": write_vtp', '".count": write_count,\n    ')
     solved = io_samples.solution()
     io.write_result(solved, clone.folder / "seat.npz")
-    clone.run("-m", "seatlook", "wrinkle", "seat.npz", "--export", "seat.count")
+    clone.run("-m", "seatlook", "wrinkle", "seat.npz", "--preview", "--export", "seat.count")
     faces, vertices = len(solved.cover.faces), len(solved.positions)
     text = (clone.folder / "seat.count").read_text()
     assert text == f"{faces} faces of {vertices} vertices"
@@ -293,7 +293,7 @@ def test_recipe_wrinkle_index_or_measure(clone):
     line = "from seatlook.wrinkle.steepness import steepness\n"
     clone.insert("wrinkle/registry.py", "from seatlook.wrinkle.surface import Surface", line)
     io.write_result(io_samples.solution(), clone.folder / "seat.npz")
-    words = ["seatlook", "wrinkle", "seat.npz", "--export", "seat.csv", "--json"]
+    words = ["seatlook", "wrinkle", "seat.npz", "--preview", "--export", "seat.csv", "--json"]
     zones = json.loads(clone.run("-m", *words))["zones"]
     assert all(0.0 <= zone["steepness_mean"] <= 1.0 for zone in zones)
     assert "_STEEPNESS" in (clone.folder / "seat.csv").read_text()

@@ -25,6 +25,7 @@ from seatlook.report.comparison_page import write_comparison
 from seatlook.report.evaluation_page import write_report
 from seatlook.report.page.types import Check, ScoreSection
 from seatlook.report.sections.score import visibility
+from seatlook.results.resolution import Resolution
 
 _NO_SCENES = (".dxf", ".obj", ".stl", ".ply", ".npz")
 
@@ -41,7 +42,7 @@ class Outcome:
     def missed(self) -> tuple[str, ...]:
         """A sentence for every limit of [accept] that is missed."""
         figures = tuple(
-            f"{v.limit.zone}: {v.limit.measure} is {v.value:.4g}, "
+            f"{v.limit.zone}: {v.limit.measure} is {v.value:.4g}{v.note}, "
             f"the limit is {v.limit.maximum:.4g}"
             for v in self.evaluation.verdicts
             if not v.kept
@@ -58,14 +59,9 @@ class ComparisonOutcome:
     scores: VariantScores | None
 
     @property
-    def unconverged(self) -> tuple[str, ...]:
-        """A sentence for every variant that is not converged."""
-        solutions = {name: case.solution for name, case in self.comparison.variants.items()}
-        return tuple(
-            f"{name}: not converged: {solution.reason}"
-            for name, solution in solutions.items()
-            if solution.status != "converged"
-        )
+    def resolutions(self) -> Mapping[str, Resolution]:
+        """What is to be thought of every variant."""
+        return {name: case.resolution for name, case in self.comparison.variants.items()}
 
 
 def missed(checks: Iterable[Check]) -> tuple[str, ...]:
@@ -79,8 +75,8 @@ class Seat(Case):
     Examples
     --------
     >>> seat = open("seat.toml")                                     # doctest: +SKIP
-    >>> seat.solve().status                                          # doctest: +SKIP
-    'converged'
+    >>> seat.resolution.status                                       # doctest: +SKIP
+    'resolved'
     >>> seat.compare("eased.toml").table("w2_mean")                  # doctest: +SKIP
     >>> seat.evaluate("out/seat").page                               # doctest: +SKIP
     PosixPath('out/seat/index.html')

@@ -18,7 +18,7 @@ def zone_row(zone, area, mean):
         area=area,
         element_size=0.0,
         stretch_share=0.0,
-        w2_error=0.0,
+        w2_face_rms=0.0,
         figures=MappingProxyType({"w2_mean": mean}),
     )
 

@@ -204,6 +204,11 @@ def test_check_tells_what_would_be_solved(demo_scene, capsys):
     assert found["element_size_mm"] == pytest.approx(20, rel=0.15)
     ratio = found["wavelength_mm"] / found["element_size_mm"]
     assert found["wavelength_over_element_size"] == pytest.approx(ratio)
+    assert found["expected_status"] == "converged, not resolved"
+    waves = {wave["material"]: wave for wave in found["waves"]}
+    assert not waves["leather-laminate"]["resolved"]
+    least = min(wave["wavelength_over_element_size"] for wave in waves.values())
+    assert least == pytest.approx(ratio, rel=0.05)
     ease = {row["seam"]: row for row in found["ease"]}
     # The rear panel is cut 1 % narrower across its grain; the insert's rear edge is not.
     assert ease["INSERT-REAR"]["ease_percent"] == pytest.approx(1.0, abs=0.15)
@@ -361,7 +366,7 @@ def evaluated(demo_scene: Path, tmp_path_factory: pytest.TempPathFactory) -> Pat
     scene.write_text(
         text.replace('["black-leather", "bright-leather", "suede"]', '["suede", "pvc"]')
     )
-    done = seatlook("evaluate", "scene.toml", "--out", ".", "--no-score", cwd=folder)
+    done = seatlook("evaluate", "scene.toml", "--out", ".", "--no-score", "--preview", cwd=folder)
     (folder / "stdout").write_text(done.stdout)
     (folder / "stderr").write_text(f"{done.returncode}\n{done.stderr}")
     return folder
@@ -369,10 +374,18 @@ def evaluated(demo_scene: Path, tmp_path_factory: pytest.TempPathFactory) -> Pat
 
 @pytest.mark.render
 def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
-    code, gallery, missed = (evaluated / "stderr").read_text().splitlines()
+    code, *foretold, gallery, first, second, status = (
+        (evaluated / "stderr").read_text().splitlines()
+    )
     assert code == "1"
-    assert missed.startswith("INSERT interior: w2_mean is ")
-    assert missed.endswith("the limit is 1e-09")
+    reasons = [line.removeprefix("will not be resolved: ") for line in foretold]
+    assert status == f"converged, not resolved: {'; '.join(reasons)}"
+    assert first.startswith("INSERT interior: w2_mean is ")
+    assert first.endswith(", not resolved, the limit is 1e-09")
+    # No limit is kept by a cover that its mesh does not resolve.
+    assert second.startswith("REAR interior: w2_mean is ")
+    assert second.endswith(", not resolved, the limit is 50")
+    assert "leather-laminate: elements of 20" in status
     assert gallery == "gallery: index.html"
     heads, *rows = (evaluated / "stdout").read_text().splitlines()
     assert heads.split()[:3] == ["zone", "area_cm2", "w2_mean"]
@@ -402,7 +415,7 @@ def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
 
 @pytest.mark.render
 def test_a_result_is_judged_and_drawn_again_without_solving(evaluated, tmp_path):
-    words = ["wrinkle", "result.npz", "--scene", "scene.toml", "--json"]
+    words = ["wrinkle", "result.npz", "--scene", "scene.toml", "--json", "--preview"]
     exports = [tmp_path / "seat.vtp", tmp_path / "seat.csv"]
     table = seatlook(*words, *(f"--export={path}" for path in exports), cwd=evaluated)
     assert table.returncode == 0, table.stderr

@@ -25,7 +25,8 @@ def scene(tmp_path: Path) -> Path:
 
 
 def evaluate(scene: Path, out: Path, *words: str) -> int:
-    return run(["evaluate", str(scene), "--out", str(out), "--no-score", "--quiet", *words])
+    always = ["--no-score", "--quiet", "--preview"]
+    return run(["evaluate", str(scene), "--out", str(out), *always, *words])
 
 
 def test_textures_whose_names_make_one_file_name_get_two_pictures(scene, tmp_path):

@@ -68,7 +68,7 @@ def test_a_missed_limit_ends_with_one_and_all_is_left_in_the_folder(scene, capsy
     text = text.replace("[camera]\n", "[camera]\nsize = [480, 270]\n")
     scene.write_text(text.replace("element_size_mm = 20.0", "element_size_mm = 14.0"))
     result, out = scene.with_name("result.npz"), scene.with_name("score")
-    assert run(["solve", str(scene), "--out", str(result)]) == 0
+    assert run(["solve", str(scene), "--out", str(result), "--preview"]) == 0
     capsys.readouterr()
     words = ["--texture", "black-leather", "--texture", "suede", "--rig", "sun"]
     assert run(["score", str(scene), *words, "--out", str(out), "--json"]) == 1

@@ -212,7 +212,8 @@ def test_a_comparison_in_a_folder_is_one_call(comparison, tmp_path):
     assert outcome.page == tmp_path / "out" / "index.html"
     assert outcome.scores is None
     assert len(list((tmp_path / "out" / "variants").rglob("*.png"))) == 2 * 2 * 2
-    assert outcome.unconverged == ("suede cover: not converged: too hard",)
+    assert outcome.resolutions["suede cover"].sentence == "not converged: too hard"
+    assert outcome.resolutions["pvc"].status == "converged, not resolved"
 
 
 def test_a_comparison_is_refused_before_its_first_solve(comparison, tmp_path):

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::seatlook.errors.InputWarning")
 def solved(scene, capsys):
     """Exit code, result and what was said of a solve from the command line."""
     result = scene.with_name("result.npz")
-    code = run(["solve", str(scene), "--out", str(result)])
+    code = run(["solve", str(scene), "--out", str(result), "--preview"])
     return code, io.read_result(result), capsys.readouterr().err
 
 

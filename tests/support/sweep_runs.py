@@ -78,7 +78,17 @@ def wait_for(holds: Callable[[], object], *, seconds: float = 240.0) -> None:
 def start_sweep(folder: Path, *words: str) -> subprocess.Popen[str]:
     """Start the sweep of a folder, as a group of its own, its results below "out"."""
     return subprocess.Popen(
-        [sys.executable, "-m", "seatlook", "sweep", "sweep.toml", "--out", "out", *words],
+        [
+            sys.executable,
+            "-m",
+            "seatlook",
+            "sweep",
+            "sweep.toml",
+            "--out",
+            "out",
+            "--preview",
+            *words,
+        ],
         cwd=folder,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

@@ -93,7 +93,7 @@ def test_a_sweep_of_irregular_covers_leaves_a_map_and_its_causes(tmp_path, capsy
         '[[irregularity.input]]\nname = "foam"\nkind = "foam_mm"\nspread = 0.01\n'
     )
     out = tmp_path / "out"
-    assert run(["sweep", str(tmp_path / "sweep.toml"), "--out", str(out)]) == 0
+    assert run(["sweep", str(tmp_path / "sweep.toml"), "--out", str(out), "--preview"]) == 0
     assert "5 of 5 covers converged; " in capsys.readouterr().err
     heads, first, second = (out / "inputs.csv").read_text().splitlines()
     assert heads == "input,rank_correlation,rank_correlation_of_size,noise"

@@ -21,11 +21,11 @@ def test_rows_hold_means_by_area_cause_size_and_error():
         assert row["w_stretch_mean"] + row["w_compression_mean"] == pytest.approx(row["w2_mean"])
         assert row.stretch_share == pytest.approx(row["w_stretch_mean"] / row["w2_mean"])
         assert row.element_size == pytest.approx(0.005 * (2 + np.sqrt(2)) / 3)
-        assert 0 < row.w2_error < 0.1
+        assert 0 < row.w2_face_rms < 0.1
 
 
 def test_a_flat_zone_has_neither_share_nor_error():
     solution = shaped(wave(0.0, 0.06))
     (row,) = assess(solution, Criteria(thresholds=(20.0,))).zones
     assert row["w2_mean"] == pytest.approx(0.0, abs=1e-9)
-    assert row.w2_error == pytest.approx(0.0, abs=1e-9)
+    assert row.w2_face_rms == pytest.approx(0.0, abs=1e-9)

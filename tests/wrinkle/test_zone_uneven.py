@@ -58,7 +58,7 @@ def test_error_is_the_root_mean_square_over_the_area(sample):
     error = wrinkle.recovery_error(solution.cover.rest, solution.cover.faces, indices.w2)
     for row, inside, area, _ in rows_of(sample):
         own = error[inside]
-        assert row["w2_error"] == pytest.approx(np.sqrt(own**2 @ area / area.sum()), rel=1e-12)
+        assert row["w2_face_rms"] == pytest.approx(np.sqrt(own**2 @ area / area.sum()), rel=1e-12)
         # The sample tells it from all that it could be mistaken for.
         others = {
             "mean": abs(own @ area / area.sum()), "mean size": np.abs(own) @ area / area.sum(),
@@ -66,7 +66,7 @@ def test_error_is_the_root_mean_square_over_the_area(sample):
             "of faces": np.sqrt((own**2).mean()), "spread": own.std(),
         }  # fmt: skip
         for name, value in others.items():
-            assert abs(value / row["w2_error"] - 1.0) > 1e-4, name
+            assert abs(value / row["w2_face_rms"] - 1.0) > 1e-4, name
 
 
 def test_means_and_shares_are_over_the_area(sample):

@@ -27,6 +27,7 @@ from seatlook.model.scene import SCORE_MEASURES, Verdict
 from seatlook.model.zones import FREE_EDGE
 from seatlook.results.deviation import SeamLine, deviation, seam_lines
 from seatlook.results.gap import ZoneGap, gap, zone_gaps
+from seatlook.results.resolution import Resolution, resolution
 from seatlook.wrinkle import (
     DESIGN_WAVELENGTH,
     INDICES,
@@ -151,7 +152,11 @@ class Assessment:
     @cached_property
     def zones(self) -> tuple[ZoneRow, ...]:
         """Figures of every zone that has a face."""
-        return zone_table(self.solution.cover, {name: self.values(name) for name in INDICES})
+        return zone_table(
+            self.solution.cover,
+            {name: self.values(name) for name in INDICES},
+            unresolved=self.resolution.unresolved,
+        )
 
     @property
     def share_above_one(self) -> float:
@@ -161,9 +166,16 @@ class Assessment:
         return sum(a * share for a, share in inner) / area if area else 0.0
 
     @cached_property
+    def resolution(self) -> Resolution:
+        """Whether the mesh carries what the result says."""
+        return resolution(self.solution)
+
+    @cached_property
     def wrinkles(self) -> tuple[Wrinkle, ...]:
-        """The five worst wrinkles, the worst first."""
-        return worst_wrinkles(self.solution, self.indices, count=WORST)
+        """The five worst wrinkles, the worst first; no advice on those that are not resolved."""
+        return worst_wrinkles(
+            self.solution, self.indices, count=WORST, unresolved=self.resolution.unresolved
+        )
 
     @cached_property
     def sections(self) -> tuple[Section, ...]:
@@ -236,6 +248,7 @@ class Assessment:
             Verdict(
                 limit=limit,
                 value=max(rows[zone][limit.measure] for zone in limited(limit, scene, tuple(rows))),
+                resolved=self.resolution.resolved,
             )
             for limit in scene.limits
             if limit.measure not in SCORE_MEASURES

@@ -38,6 +38,7 @@ from seatlook.pbr import Image
 from seatlook.pbr.maps.plotter import plotter
 from seatlook.pbr.picture import img
 from seatlook.results.gap import ZoneGap
+from seatlook.results.resolution import Resolution
 from seatlook.results.ring_pulls import RingPull, ring_pulls
 from seatlook.solver import SolverSettings, solve
 from seatlook.visibility.light_search import WorstLight, worst_lights
@@ -67,7 +68,7 @@ class Case:
         self._solution = solution
 
     def __repr__(self) -> str:
-        state = "not solved yet" if self._solution is None else self._solution.status
+        state = "not solved yet" if self._solution is None else self.resolution.status
         return f"{type(self).__name__}({self.scene!r}, {state})"
 
     def _repr_html_(self) -> str:
@@ -118,6 +119,11 @@ class Case:
     def assessment(self) -> Assessment:
         """Indices, zones, worst wrinkles, sections, distortion, distances."""
         return assess(self.solution, self.criteria, design=self.scene.design)
+
+    @property
+    def resolution(self) -> Resolution:
+        """Whether the result is resolved, or only converged, or not even that, and why."""
+        return self.assessment.resolution
 
     def solve(
         self,

@@ -151,6 +151,7 @@ def wrinkle_row(rank: int, w: Wrinkle) -> dict[str, object]:
         "near": f"{w.near_kind} {w.near}".strip() or None,
         "distance_mm": 1e3 * w.distance if w.near_kind else None,
         "ease_percent": 100 * w.ease if w.near_kind == "seam" else None,
+        "resolved": w.resolved,
         "advice": w.advice,
     }
 

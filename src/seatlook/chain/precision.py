@@ -13,12 +13,10 @@ from seatlook.chain.case import Case
 from seatlook.errors import InputError
 from seatlook.model import Scene, Solution
 from seatlook.model.progress import Progress, silent
+from seatlook.results.resolution import CURVATURE_ERROR, PER_WAVE, Resolution, resolution
 from seatlook.solver import SolverSettings, foam_wavelength
 from seatlook.wrinkle import ZoneRow
 
-# Recovered curvature of a wave: relative error 3.9 (h / lambda)^2, measured at 8 and 16 elements.
-_CURVATURE = 3.9
-_COARSEST = 1.0 / 8.0  # of lambda, for the shape itself
 _RATIO = math.sqrt(2.0)  # of the two element sizes: half the work, and an error of second order
 _STEP = 0.02  # s, of the process, which errs by _STEP_ERROR
 _STEP_ERROR = 0.02  # the demo at 20 mm: 4 % between 0.04 and 0.02 s, 0.4 % between 0.02 and 0.01
@@ -70,9 +68,13 @@ class Precise:
 
     @property
     def reached(self) -> bool:
-        """Whether the measured error is within the tolerance and both solutions converged."""
-        done = self.solution.status == self.coarse.status == "converged"
-        return done and self.error <= self.tolerance
+        """Whether the solution is resolved within the tolerance and the coarser one converged."""
+        return self.resolution.resolved and self.coarse.status == "converged"
+
+    @property
+    def resolution(self) -> Resolution:
+        """What is to be thought of the solution, its measured error included."""
+        return resolution(self.solution).measured(self.error, self.tolerance)
 
 
 def plan(scene: Scene, tolerance: float) -> Plan:
@@ -96,11 +98,11 @@ def plan(scene: Scene, tolerance: float) -> Plan:
         raise InputError.single("tolerance", got=tolerance, expected="a share between 0 and 1")
     fabrics = [material.fabric for material in scene.materials.values()]
     wave = min(foam_wavelength(fabric, scene.foam.material) for fabric in fabrics)
-    size = wave * min(math.sqrt(0.5 * tolerance / _CURVATURE), _COARSEST)
+    size = wave * min(math.sqrt(0.5 * tolerance / CURVATURE_ERROR), 1.0 / PER_WAVE)
     area = sum(_area(panel.outline) for panel in scene.pattern.panels)
     vertices = area / (size**2 * math.sqrt(0.75))
     if vertices > _MOST_VERTICES:
-        possible = 2.0 * _CURVATURE * area / (_MOST_VERTICES * math.sqrt(0.75) * wave**2)
+        possible = 2.0 * CURVATURE_ERROR * area / (_MOST_VERTICES * math.sqrt(0.75) * wave**2)
         raise InputError.single(
             "tolerance", got=tolerance, expected=f"{possible:.2g} or more",
             hint=f"{1e3 * size:.2g} mm elements would make {vertices:,.0f} vertices",

@@ -1,7 +1,7 @@
 """One exit code per kind of failure, one way to say what went wrong.
 
-Exit codes: 0 good, 1 a limit of [accept] is missed, 2 wrong input, 3 solver or renderer failed,
-70 a fault of seatlook itself, 130 interrupted.
+Exit codes: 0 good, 1 a limit of [accept] is missed, 2 wrong input, 3 not converged, not resolved by
+the mesh, or not drawn, 70 a fault of seatlook itself, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ _HELP = """Where a car-seat cover wrinkles, why, and whether anyone will see it.
 Start with: seatlook demo --out out/demo, or with files of your own: seatlook init
 
 Any command takes --quiet: no progress and no notes, only data and what went wrong. NO_COLOR is
-heeded. Exit codes: 0 good, 1 a limit is missed, 2 wrong input, 3 solver or renderer failed.
+heeded. Exit codes: 0 good, 1 a limit is missed, 2 wrong input, 3 not converged, not resolved by the
+mesh, or not drawn.
 """
 
 _OUT_OF_MEMORY = (

@@ -5,13 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from seatlook.cli._options import Changes, ElementSize, SceneFile, Seed, seat_of
+from seatlook.cli._options import Changes, ElementSize, SceneFile, Seed, note_coarse, seat_of
 from seatlook.cli._output import Json, note, say, table
 from seatlook.errors import InputError, RenderError
 
 if TYPE_CHECKING:
     from seatlook.assembly.ease import SeamEase
     from seatlook.assembly.start_lines import StartLine
+    from seatlook.results.resolution import Waves
     from seatlook.seat import Seat
 
 
@@ -29,19 +30,22 @@ def check(
     Also says what is read of the pattern file, and what is not, with the reason.
 
     Draws the cover as it starts into check/assembly.png beside the scene: panels over foam, seams
-    by number with their gaps, hooks and frames, and whatever is refused.
+    by number with their gaps, hooks and frames, and whatever is refused. Says which material will
+    not be resolved, because its wrinkles are shorter than eight elements.
 
     Example: seatlook check seat.toml
     """
     from seatlook.assembly.ease import seam_ease
     from seatlook.assembly.start_lines import start_lines
-    from seatlook.results.resolution import resolutions
+    from seatlook.results.resolution import expected_waves
 
     seat = seat_of(scene, seed, element_size_mm, changes)
     drawing = _drawing(seat, scene.parent / "check" / "assembly.png")
     cover, pattern = seat.check(), seat.scene.pattern
-    finest = min(resolutions(cover), key=lambda mesh: mesh.wavelength)
     read = _pattern_lines(scene, changes)
+    waves = expected_waves(cover)
+    finest = min(waves, key=lambda wave: wave.wavelength)
+    resolved = all(wave.resolved for wave in waves)
     lines = start_lines(seat.scene, cover)
     sewn = {line.name: line for line in lines if line.kind == "seam"}
     eases = [seam_ease(pattern, seam) for seam in pattern.seams]
@@ -59,15 +63,18 @@ def check(
             ("triangles", len(cover.faces)),
             ("element_size_mm", 1e3 * cover.element_size),
             ("wavelength_mm", 1e3 * finest.wavelength),
-            ("wavelength_over_element_size", finest.per_wave),
+            ("wavelength_over_element_size", finest.wavelength / cover.element_size),
+            ("expected_status", "resolved" if resolved else "converged, not resolved"),
             ("drawing", None if drawing is None else str(drawing)),
             *([("ease", seams), ("held", held), ("pattern", read)] if json else ()),
+            *([("waves", list(map(_wave_row, waves)))] if json else ()),
         ],
         json=json,
     )
     for rows in (seams, held):
         if rows and not json:
             table(tuple(rows[0]), [tuple(map(_short, row.values())) for row in rows], json=False)
+    note_coarse(seat)
     note(f"nothing wrong; to solve and draw it: seatlook evaluate {scene} --out FOLDER")
 
 
@@ -79,6 +86,18 @@ def _pattern_lines(scene: Path, changes: tuple[str, ...]) -> list[str]:
     lines = [] if report is None else report.lines()
     note(*lines)
     return lines
+
+
+def _wave_row(wave: Waves) -> dict[str, Any]:
+    """Figures of the elements of one material."""
+    return {
+        "material": wave.material,
+        "panels": list(wave.panels),
+        "wavelength_mm": 1e3 * wave.wavelength,
+        "element_size_mm": 1e3 * wave.element_size,
+        "wavelength_over_element_size": wave.per_wave,
+        "resolved": wave.resolved,
+    }
 
 
 def _drawing(seat: Seat, path: Path) -> Path | None:

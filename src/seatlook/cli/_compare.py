@@ -8,8 +8,17 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from seatlook.cli._options import Changes, DryRun, Out, Scored, SingleFile, seat_of
-from seatlook.cli._output import Json, note, progress, say, table
+from seatlook.cli._options import (
+    Changes,
+    DryRun,
+    Out,
+    Preview,
+    Scored,
+    SingleFile,
+    exit_code_of,
+    seat_of,
+)
+from seatlook.cli._output import Json, note, progress, table
 from seatlook.errors import InputError
 
 
@@ -23,6 +32,7 @@ def compare(
     score: Scored = True,
     single_file: SingleFile = False,
     dry_run: DryRun = False,
+    preview: Preview = False,
     json: Json = False,
 ) -> int:
     """Put several scenes into one gallery: same camera, exposures and ranges, differences first.
@@ -64,8 +74,8 @@ def compare(
     differences = outcome.comparison.table()
     table(differences.heads, differences.rows, json=json)
     note(f"gallery: {outcome.page}")
-    say(*outcome.unconverged)
-    return 3 if outcome.unconverged else 0
+    found = outcome.resolutions
+    return exit_code_of(*found.values(), names=tuple(found), preview=preview)
 
 
 def _results(words: tuple[str, ...], names: tuple[str, ...]) -> MappingProxyType[str, Path]:

@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from seatlook.cli._evaluate import run_evaluation
-from seatlook.cli._options import Force, Out, Resume, Scored, Seed, seat_of
+from seatlook.cli._options import Force, Out, Preview, Resume, Scored, Seed, exit_code_of, seat_of
 from seatlook.cli._output import Json, note, progress
 from seatlook.cli._shares import Shares, shares
 
@@ -30,6 +30,7 @@ def demo(
     score: Scored = True,
     files_only: Annotated[bool, Parameter(negative=())] = False,
     force: Force = False,
+    preview: Preview = False,
     json: Json = False,
 ) -> int:
     """Write the files of a seat with a pattern that fits it, and evaluate them.
@@ -92,4 +93,6 @@ def demo(
     note(f"scene: {scene}")
     if files_only:
         return 0
-    return run_evaluation(seat_of(scene), out, resume=resume, score=score, force=force, json=json)
+    seat = seat_of(scene)
+    missed = run_evaluation(seat, out, resume=resume, score=score, force=force, json=json)
+    return exit_code_of(seat.resolution, preview=preview) or missed

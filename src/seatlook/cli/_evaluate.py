@@ -11,12 +11,14 @@ from seatlook.cli._options import (
     ElementSize,
     Force,
     Out,
+    Preview,
     Resume,
     SceneFile,
     Scored,
     Seed,
     SingleFile,
     exit_code_of,
+    note_coarse,
     seat_of,
 )
 from seatlook.cli._output import Json, note, progress, say, table
@@ -24,6 +26,7 @@ from seatlook.cli._output import Json, note, progress, say, table
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from seatlook.results.resolution import Resolution
     from seatlook.seat import Seat
     from seatlook.wrinkle import ZoneRow
 
@@ -41,21 +44,24 @@ def evaluate(
     single_file: SingleFile = False,
     dry_run: DryRun = False,
     force: Force = False,
+    preview: Preview = False,
     json: Json = False,
 ) -> int:
     """Solve a scene, assess its wrinkles, draw it, and write the gallery page.
 
     Leaves index.html, result.npz, zones.csv, images and maps in the folder. Ends with 1 if a
-    limit of [accept] is missed, and names zone and value.
+    limit of [accept] is missed, and names zone and value; with 3, which goes before, if the result
+    is not converged or not resolved by its mesh.
 
     Example: seatlook evaluate seat.toml --out out/seat
     """
     seat = seat_of(scene, seed, element_size_mm, changes)
     if dry_run:
         return _list_cells(seat, out, json=json)
-    return run_evaluation(
+    missed = run_evaluation(
         seat, out, resume=resume, score=score, single_file=single_file, force=force, json=json
     )
+    return exit_code_of(seat.resolution, preview=preview) or missed
 
 
 def _list_cells(seat: Seat, out: Path, *, json: bool) -> int:
@@ -86,37 +92,37 @@ def run_evaluation(
     single_file: bool = False,
     force: bool = False,
 ) -> int:
-    """Evaluate a seat, print its zones and return the exit code."""
+    """Evaluate a seat, print its zones and return 1 if a limit is missed."""
+    note_coarse(seat)
     with progress() as show:
         outcome = seat.evaluate(
             out, resume=resume, score=score, single_file=single_file, force=force, progress=show
         )
-    print_zones(seat.assessment.zones, json=json)
+    print_zones(seat.assessment.zones, seat.resolution, json=json)
     note(f"gallery: {outcome.page}")
     if outcome.score and outcome.score.refused:
         say(f"no score: {outcome.score.refused}")
     say(*outcome.missed)
-    return exit_code_of(seat.solution) or int(bool(outcome.missed))
+    return int(bool(outcome.missed))
 
 
-def print_zones(zones: Sequence[ZoneRow], *, json: bool) -> None:
+def print_zones(zones: Sequence[ZoneRow], found: Resolution | None, *, json: bool) -> None:
     """Print the table of zones: as JSON whole, for a reader what the page shows as well."""
     from seatlook.wrinkle import INDICES
 
-    if json:
-        rows = [row.values() for row in zones]
+    if json and found is not None:
+        rows = [row.values() | {"status": found.status, "reason": found.reason} for row in zones]
         table(list(rows[0]), [tuple(row.values()) for row in rows], json=True)
         return
     figures = [figure for index in INDICES.values() for figure, _, _ in index.columns]
     table(
-        ("zone", "area_cm2", *figures, "stretch_share", "w2_error", "element_size_mm"),
+        ("zone", "area_cm2", *figures, "stretch_share", "element_size_mm"),
         [
             (
                 row.zone,
                 1e4 * row.area,
                 *(row[figure] for figure in figures),
                 row.stretch_share,
-                row.w2_error,
                 1e3 * row.element_size,
             )
             for row in zones

@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from seatlook.cli._output import say
+from seatlook.cli._output import note, say
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.model import Solution
+    from collections.abc import Sequence
+
+    from seatlook.results.resolution import Resolution
     from seatlook.seat import Seat
 
 SceneFile = Annotated[Path, Parameter(help="Scene file (TOML).")]
@@ -57,6 +59,13 @@ Scored = Annotated[
     bool, Parameter(help="Score how visible the wrinkles are, always where [accept] limits it.")
 ]
 Names = Annotated[tuple[str, ...], Parameter(negative=())]
+Preview = Annotated[
+    bool,
+    Parameter(
+        negative=(),
+        help="Be content with a result that is converged but not resolved: do not end with 3.",
+    ),
+]
 ResultOut = Annotated[Path, Parameter(help="Result file to write (.npz).")]
 
 
@@ -107,8 +116,25 @@ def checked_result_name(out: Path) -> None:
         raise InputError.single("--out", got=out.name, expected="a name that ends in .npz")
 
 
-def exit_code_of(*solutions: Solution) -> int:
-    """3 if one is not converged, which is said."""
-    bad = [solution for solution in solutions if solution.status != "converged"]
-    say(*(f"not converged: {solution.reason}" for solution in bad))
-    return 3 if bad else 0
+def note_coarse(seat: Seat) -> None:
+    """Say, before a solve, which material its mesh will not resolve."""
+    from seatlook.results.resolution import expected_waves
+
+    waves = expected_waves(seat.cover)
+    note(*(f"will not be resolved: {wave.sentence}" for wave in waves if not wave.resolved))
+
+
+def exit_code_of(*results: Resolution, names: Sequence[str] = (), preview: bool = False) -> int:
+    """3 if a result is not resolved, which is said; a preview need only be converged.
+
+    Parameters
+    ----------
+    names : of the results, said before what is wrong with them
+    """
+    heads = [f"{name}: " for name in names] or [""] * len(results)
+    for head, result in zip(heads, results, strict=True):
+        if not result.resolved:
+            say(f"{head}{result.sentence}")
+    if preview:
+        return 3 if any(result.balance for result in results) else 0
+    return 0 if all(result.resolved for result in results) else 3

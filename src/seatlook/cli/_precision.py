@@ -48,4 +48,6 @@ def precision(
     size, wave = 1e3 * precise.plan.element_size, 1e3 * precise.plan.wavelength
     say(f"elements of {size:.3g} mm, {wave / size:.3g} to a wave of {wave:.3g} mm; "
         f"error {precise.error:.2g}, asked for {tolerance:.2g}")  # fmt: skip
-    return exit_code_of(precise.solution, precise.coarse) or (0 if precise.reached else 3)
+    if precise.coarse.status != "converged":
+        say(f"the coarser mesh is not converged: {precise.coarse.reason}")
+    return exit_code_of(precise.resolution) or (0 if precise.reached else 3)

@@ -10,11 +10,13 @@ from cyclopts import Parameter
 from seatlook.cli._options import (
     Changes,
     ElementSize,
+    Preview,
     ResultOut,
     SceneFile,
     Seed,
     checked_result_name,
     exit_code_of,
+    note_coarse,
     seat_of,
 )
 from seatlook.cli._output import Json, Say, note, progress, table
@@ -22,6 +24,7 @@ from seatlook.errors import InputError
 
 if TYPE_CHECKING:
     from seatlook.model import Solution
+    from seatlook.results.resolution import Resolution
     from seatlook.seat import Seat
 
 
@@ -36,11 +39,13 @@ def solve(
     stages: Annotated[bool, Parameter(negative=())] = False,
     again_from: Annotated[str | None, Parameter(name="--from")] = None,
     resume: Annotated[bool, Parameter(negative=())] = False,
+    preview: Preview = False,
     json: Json = False,
 ) -> int:
     """Sew, hook and cover a scene, and keep the result; nothing is drawn.
 
-    A result that is not converged is written as well, says so, and ends with 3.
+    A result that is not converged, or not resolved by its mesh, is written as well, says so, and
+    ends with 3.
 
     Example: seatlook solve seat.toml --out seat.npz
 
@@ -62,29 +67,30 @@ def solve(
     if again_from is not None and resume:
         raise InputError.single("--from", got="--resume as well", expected="one of them")
     seat = seat_of(scene, seed, element_size_mm, changes)
+    note_coarse(seat)
     with progress() as show:
         if stages or resume or again_from is not None:
             _in_stages(seat, out.with_suffix(".stages"), again_from, resume, show)
         seat.solve(out, progress=show)
-    solution = seat.solution
+    solution, found = seat.solution, seat.resolution
     if json:
-        rows = [("status", solution.status), ("reason", solution.reason)]
+        rows = [("status", found.status), ("reason", found.reason)]
         table(("what", "value"), [*rows, *solution.figures.items()], json=True)
     else:
-        _print_summary(solution)
-    return exit_code_of(solution)
+        _print_summary(solution, found)
+    return exit_code_of(found, preview=preview)
 
 
-def _print_summary(solution: Solution) -> None:
+def _print_summary(solution: Solution, found: Resolution) -> None:
     """Print status and reason first, then what it was reached with, with units."""
     from seatlook.model.table import number
     from seatlook.results.conditions import conditions
 
     cover = solution.cover
-    rows: list[tuple[str, str, str]] = [("status", solution.status, "")]
-    if solution.reason:
-        rows.append(("reason", solution.reason, ""))
-    for held in conditions(solution):
+    rows: list[tuple[str, str, str]] = [("status", found.status, "")]
+    if found.reason:
+        rows.append(("reason", found.reason, ""))
+    for held in conditions(solution, found):
         unit = f" {held.unit}" if held.unit else ""
         limit = f"at most {number(held.limit)}{unit}"
         rows.append((held.meaning, f"{number(held.value)}{unit}", limit))

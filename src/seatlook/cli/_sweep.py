@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from seatlook.cli._options import DryRun, Out
+from seatlook.cli._options import DryRun, Out, Preview
 from seatlook.cli._output import Json, note, print_rows, progress, say, show_json, table
 
 
@@ -20,6 +20,7 @@ def sweep(
     shard: str = "1/1",
     scheduler: str | None = None,
     dry_run: DryRun = False,
+    preview: Preview = False,
     json: Json = False,
 ) -> int:
     """Go through materials, patterns, seeds, tolerances; finished cells are not done again.
@@ -27,7 +28,7 @@ def sweep(
     Each cell is solved, judged and drawn on its own and kept under a name that stands for its
     content, so a sweep that was stopped goes on where it was. Leaves cells/, sweep.csv and, where
     the file has [irregularity], inputs.csv and map and table of the probability that W2 is above
-    1. Ends with 3 if a cell failed, and lists those.
+    1. Ends with 3 if a cell failed, or is not converged or not resolved, and lists those.
 
     Example: seatlook sweep sweep.toml --out out/sweep --workers 2
 
@@ -41,6 +42,7 @@ def sweep(
         Address of a Dask scheduler whose workers do the cells; needs the extra
         seatlook[cluster].
     """
+    from seatlook.sweeps.summary import at_rest
     from seatlook.sweeps.sweep import list_cells
     from seatlook.sweeps.sweep import sweep as run_sweep
 
@@ -59,4 +61,5 @@ def sweep(
         print_rows(outcome.probability)
     note(*outcome.findings)
     say(*outcome.notices)
-    return 3 if outcome.failed else 0
+    wanting = [row for row in outcome.unresolved if not (preview and at_rest(row))]
+    return 3 if outcome.failed or wanting else 0

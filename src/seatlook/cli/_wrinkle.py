@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from seatlook.cli._evaluate import print_zones
-from seatlook.cli._options import result_of, seat_of
+from seatlook.cli._options import Preview, exit_code_of, result_of, seat_of
 from seatlook.cli._output import Json, print_rows, progress, show_json
 from seatlook.cli._shells import ShellOptions, assess_file, check_no_options
 from seatlook.errors import InputError
@@ -17,6 +17,7 @@ from seatlook.errors import InputError
 if TYPE_CHECKING:
     from seatlook.chain.assess import Assessment
     from seatlook.model import Camera, CurvatureMode, Solution, StrainMeasure
+    from seatlook.results.resolution import Resolution
 
 Files = Annotated[tuple[Path, ...], Parameter(negative=())]
 _MEASURES: dict[str, StrainMeasure] = {"green": "green", "log": "logarithmic"}
@@ -58,9 +59,12 @@ def wrinkle(
     out: Path | None = None,
     export: Files = (),
     shells: Annotated[ShellOptions | None, Parameter(name="*")] = None,
+    preview: Preview = False,
     json: Json = False,
-) -> None:
+) -> int:
     """Print the wrinkle indices of a result or of LS-DYNA shells; nothing is solved.
+
+    Ends with 3 if a result is not converged or not resolved by its mesh.
 
     With --out also maps, pictures, the worst wrinkles with a section across each, and tables.
 
@@ -106,12 +110,14 @@ def wrinkle(
     file = result_of(file)
     if _is_result(file):
         check_no_options(file, shells)
-        _assess_result(file, scene, against, asked, outputs)
-    elif against is not None or scene is not None:
+        found = _assess_result(file, scene, against, asked, outputs)
+        names = [str(path) for path in (file, against) if path is not None]
+        return exit_code_of(*found, names=names, preview=preview)
+    if against is not None or scene is not None:
         option = "--against" if against is not None else "--scene"
         raise InputError.single(option, got=str(file), expected="a result of seatlook (.npz)")
-    else:
-        assess_file(file, shells or ShellOptions(), asked, outputs)
+    assess_file(file, shells or ShellOptions(), asked, outputs)
+    return 0
 
 
 def _is_result(file: Path) -> bool:
@@ -125,7 +131,8 @@ def _is_result(file: Path) -> bool:
 
 def _assess_result(
     file: Path, scene: Path | None, against: Path | None, asked: Asked, outputs: Outputs
-) -> None:
+) -> list[Resolution]:
+    """Print a result's wrinkles; return what is to be thought of it, and of the other one."""
     from seatlook import io
     from seatlook.chain.case import export
     from seatlook.chain.result_maps import (
@@ -149,6 +156,7 @@ def _assess_result(
                 draw_difference(assessment, other, outputs.out, camera=camera, progress=show)
     compared = [] if other is None else compared_zones(assessment, other)
     _print(file, assessment, compared, json=outputs.json)
+    return [one.resolution for one in (assessment, other) if one is not None]
 
 
 def _assessed(
@@ -176,6 +184,8 @@ def _print(
     if json:
         data: dict[str, Any] = {
             "file": str(file),
+            "status": assessment.resolution.status,
+            "reason": assessment.resolution.reason,
             "curvature": assessment.criteria.curvature,
             "c_threshold_per_mm": [_MM * v for v in assessment.criteria.thresholds],
             "zones": [row.values() for row in assessment.zones],
@@ -185,6 +195,6 @@ def _print(
         }
         show_json(data)
         return
-    print_zones(assessment.zones, json=False)
+    print_zones(assessment.zones, assessment.resolution, json=False)
     print_rows(worst)
     print_rows(compared)

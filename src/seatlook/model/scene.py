@@ -136,15 +136,26 @@ class Limit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """One limit of ``[accept]`` and what was found."""
+    """One limit of ``[accept]`` and what was found.
+
+    Parameters
+    ----------
+    resolved : whether the result can be judged; no limit is kept by one that cannot
+    """
 
     limit: Limit
     value: float
+    resolved: bool
 
     @property
     def kept(self) -> bool:
-        """Whether the value is at most the limit's maximum."""
-        return self.value <= self.limit.maximum
+        """Whether the result is resolved, and its value at most the limit's maximum."""
+        return self.resolved and self.value <= self.limit.maximum
+
+    @property
+    def note(self) -> str:
+        """What stands after the value: that it is of a result that is not resolved."""
+        return "" if self.resolved else ", not resolved"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

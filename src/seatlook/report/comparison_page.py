@@ -87,7 +87,7 @@ def write_comparison(
             }
         ),
         provenance=MappingProxyType(dict(_provenance(comparison))),
-        status=", ".join(f"{n} {v.solution.status}" for n, v in comparison.variants.items()),
+        status=", ".join(f"{n} {v.resolution.status}" for n, v in comparison.variants.items()),
         checks=tuple(_checks(comparison)),
         warnings=tuple(_warnings(comparison, scores)),
     )
@@ -265,14 +265,14 @@ def _different_parameters(comparison: Comparison) -> Table:
 
 def _checks(comparison: Comparison) -> Iterator[Check]:
     for name, variant in comparison.variants.items():
-        status = variant.solution.status
-        yield Check(name=name, value=status, limit="converged", kept=status == "converged")
+        found = variant.resolution
+        yield Check(name=name, value=found.status, limit="resolved", kept=found.resolved)
 
 
 def _warnings(comparison: Comparison, scores: VariantScores | None) -> Iterator[str]:
     for name, variant in comparison.variants.items():
-        if variant.solution.status != "converged":
-            yield f"{name} is not converged: {variant.solution.reason}."
+        if not variant.resolution.resolved:
+            yield f"{name} is {variant.resolution.sentence}."
     for name, reason in (scores.refused if scores else {}).items():
         yield f"{name} has no score: {reason}"
     cameras = {v.scene.cameras[0].name for v in comparison.variants.values()}

@@ -11,8 +11,9 @@ from types import MappingProxyType
 
 from seatlook._version import __version__
 from seatlook.assembly.ease import SeamEase, seam_ease
+from seatlook.chain.case import Case
 from seatlook.chain.evaluation import Evaluation
-from seatlook.model import Scene, Solution
+from seatlook.model import Scene
 from seatlook.model.table import Table, number
 from seatlook.model.zones import FREE_EDGE
 from seatlook.pbr import offscreen_backend
@@ -27,7 +28,6 @@ from seatlook.report.sections.parameters import parameter_tables, parameter_toml
 from seatlook.report.sections.rigs import rig_head
 from seatlook.report.sections.wrinkles import wrinkle_section
 from seatlook.results.conditions import conditions
-from seatlook.results.resolution import resolutions
 from seatlook.wrinkle import INDICES
 
 # column of the history -> its name on the page, factor to the unit in it
@@ -71,13 +71,13 @@ def page_data(evaluation: Evaluation) -> PageData:
         toml=parameter_toml(scene),
         spots=wrinkles.spots,
         provenance=MappingProxyType(dict(_provenance(evaluation))),
-        status=solution.status,
+        status=evaluation.case.resolution.status,
         seams=seam_table(scene),
         shape=_shape(evaluation),
         wrinkles=wrinkles,
         making=making_section(solution, evaluation.folder),
         design=design_section(evaluation),
-        checks=(*_conditions(solution), *_limits(evaluation)),
+        checks=(*_conditions(evaluation.case), *_limits(evaluation)),
         warnings=tuple(_warnings(evaluation)),
         history=MappingProxyType(
             {
@@ -98,7 +98,7 @@ def _zones(evaluation: Evaluation) -> Table:
             "area [cm2]",
             *(head for _, head, _ in columns),
             "stretch [% of W2]",
-            "W2 error",
+            "resolved",
             "h [mm]",
         ),
         rows=tuple(
@@ -107,7 +107,7 @@ def _zones(evaluation: Evaluation) -> Table:
                 1e4 * row.area,
                 *(factor * row[figure] for figure, _, factor in columns),
                 100 * row.stretch_share,
-                row.w2_error,
+                "yes" if row.resolved else "no",
                 1e3 * row.element_size,
             )
             for row in sorted(evaluation.case.assessment.zones, key=lambda row: -row["w2_p95"])
@@ -163,8 +163,8 @@ def _matching(ease: SeamEase) -> str:
     return f"{near} matched" if ease.matched else f"{near} and {far}: not matched"
 
 
-def _conditions(solution: Solution) -> Iterator[Check]:
-    for condition in conditions(solution):
+def _conditions(case: Case) -> Iterator[Check]:
+    for condition in conditions(case.solution, case.resolution):
         unit = f" {condition.unit}" if condition.unit else ""
         yield Check(
             name=condition.meaning,
@@ -178,28 +178,18 @@ def _limits(evaluation: Evaluation) -> Iterator[Check]:
     for verdict in evaluation.verdicts:
         yield Check(
             name=f"{verdict.limit.zone}: {verdict.limit.measure}",
-            value=number(verdict.value),
+            value=number(verdict.value) + verdict.note,
             limit=number(verdict.limit.maximum),
             kept=verdict.kept,
         )
 
 
 def _warnings(evaluation: Evaluation) -> Iterator[str]:
-    solution = evaluation.case.solution
-    if solution.status != "converged":
-        yield f"The solution is not converged: {solution.reason}."
-    for mesh in resolutions(solution.cover):
-        h, wave = number(1e3 * mesh.element_size), number(1e3 * mesh.wavelength)
-        if mesh.level == "not resolved":
-            yield (
-                f"{mesh.material}: shape and indices are not resolved. Elements of {h} mm are "
-                f"larger than an eighth of the wavelength of its wrinkles, {wave} mm."
-            )
-        elif mesh.level == "shape only":
-            yield (
-                f"{mesh.material}: the shape is resolved, the indices are not. Elements of {h} mm "
-                f"are larger than a twelfth of the wavelength of its wrinkles, {wave} mm."
-            )
+    found = evaluation.case.resolution
+    if found.balance:
+        yield f"The solution is not converged: {found.balance}."
+    for sentence in found.coarseness:
+        yield f"The solution is not resolved: {sentence}."
 
 
 def _provenance(evaluation: Evaluation) -> Iterator[tuple[str, str]]:
@@ -217,12 +207,13 @@ def _provenance(evaluation: Evaluation) -> Iterator[tuple[str, str]]:
     yield "seed", str(cover.seed)
     yield "vertices, triangles", f"{len(cover.rest)}, {len(cover.faces)}"
     yield "element size h", f"{number(1e3 * cover.element_size)} mm"
-    for mesh in resolutions(cover):
+    for wave in evaluation.case.resolution.waves:
         yield (
-            f"wavelength lambda of {mesh.material}",
-            f"{number(1e3 * mesh.wavelength)} mm, lambda / h = {number(mesh.per_wave)}",
+            f"wavelength lambda of {wave.material}",
+            f"{number(1e3 * wave.wavelength)} mm, lambda / h = {number(wave.per_wave)}, "
+            f"estimated error of W2 on it {number(100 * wave.error)} %",
         )
-    yield "solver status", solution.status
+    yield "status", evaluation.case.resolution.sentence
     yield "solver steps", number(solution.figures["steps"])
     yield "solver iterations", number(solution.figures["iterations"])
     yield "solver CPU time", f"{number(solution.figures['cpu_seconds'])} s"

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 from seatlook.model import Solution
+from seatlook.results.resolution import PER_WAVE, SHARPEST, Resolution
 from seatlook.solver.process import coverage, verdict
 from seatlook.solver.process.process import RESIDUAL
 
@@ -58,9 +59,14 @@ _CONDITIONS: Mapping[str, tuple[str, float, float, str]] = MappingProxyType(
 )  # fmt: skip
 
 
-def conditions(solution: Solution) -> tuple[Condition, ...]:
-    """Conditions that a result has a value of: a cover without foam touches none."""
-    return tuple(
+def conditions(solution: Solution, found: Resolution) -> tuple[Condition, ...]:
+    """Conditions that a result has a value of: a cover without foam touches none.
+
+    Parameters
+    ----------
+    found : ``resolution(solution)``
+    """
+    balance = tuple(
         Condition(
             figure=name,
             meaning=meaning,
@@ -71,3 +77,23 @@ def conditions(solution: Solution) -> tuple[Condition, ...]:
         for name, (meaning, limit, factor, unit) in _CONDITIONS.items()
         if name in solution.figures
     )
+    return (*balance, *_of_mesh(found))
+
+
+def _of_mesh(found: Resolution) -> Iterator[Condition]:
+    """Conditions of "resolved"."""
+    yield Condition(
+        figure="largest_fold",
+        meaning="largest fold of an edge inside a panel",
+        value=found.largest_fold,
+        limit=SHARPEST,
+        unit="degrees",
+    )
+    for wave in found.waves:
+        yield Condition(
+            figure=f"element_size/{wave.material}",
+            meaning=f"elements of {wave.material}, to an eighth of its wavelength",
+            value=1e3 * wave.element_size,
+            limit=1e3 * wave.wavelength / PER_WAVE,
+            unit="mm",
+        )

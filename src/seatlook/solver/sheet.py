@@ -192,7 +192,7 @@ def solve_sheet(
                 elastic,
                 potential,
                 x,
-                method_of(settings.method),
+                method_of(settings.method, first="newton"),
                 tolerance=settings.tolerance,
                 max_iterations=settings.max_iterations,
             )

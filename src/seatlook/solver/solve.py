@@ -12,7 +12,8 @@ import numpy as np
 from seatlook._version import __version__
 from seatlook.errors import InputError, SolverError
 from seatlook.model import Cover, FloatArray, Solution, stage_units
-from seatlook.solver.process.process import Process, Record
+from seatlook.solver.process.pace import too_slow
+from seatlook.solver.process.process import RESIDUAL, Process, Record
 from seatlook.solver.process.settings import DEFAULT, SolverSettings
 from seatlook.solver.process.stages import Step, check_stages, schedule
 from seatlook.solver.process.verdict import figures, reasons, unrest
@@ -25,6 +26,7 @@ _ROUNDS = 40  # of the way to rest, each with the inertia of a time step twice a
 _LONGER = 10.0  # than a time step, the first of them
 _REST_ITERATIONS = 300  # of one round
 _MOST_ITERATIONS = 10_000  # of all rounds
+_TURNS = 8  # of both methods together, each until it is too slow
 _KICK, _KICKS = 0.5, 5  # thickness; how often an unstable balance is left
 _REFACTOR = 3  # time steps that share a factor
 
@@ -99,7 +101,7 @@ def solve(
     if start is not None:
         count = len(plan) - len(ahead)
         process.resume(start, time=plan[count - 1].time if count else 0.0)
-    run = _Run(process, plan, clock, progress, settings_of(settings))
+    run = _Run(process, plan, clock, progress, settings_of(settings), settings.method == "auto")
     for i, step in enumerate(ahead):
         first = i == 0 or ahead[i - 1].stage != step.stage
         if first:
@@ -124,7 +126,7 @@ def settings_of(settings: SolverSettings = DEFAULT) -> str:
     Examples
     --------
     >>> settings_of(SolverSettings(dt=0.01))
-    'revision 2, lbfgs, dt 0.01 s, 8 iterations'
+    'revision 2, auto, dt 0.01 s, 8 iterations'
     """
     steps = f"dt {settings.dt:g} s, {settings.iterations} iterations"
     return f"revision {REVISION}, {settings.method}, {steps}"
@@ -143,8 +145,10 @@ class _Run:
         clock: float,
         progress: Progress | None,
         settings: str,
+        may_change: bool,
     ) -> None:
         self.settings = settings
+        self.may_change, self.turns = may_change, 0
         self.process, self.progress, self.clock = process, progress, clock
         self.steps, self.plan = len(plan) + 1, plan
         self.records: list[Record] = []
@@ -174,10 +178,20 @@ class _Run:
         return ["unstable: negative stiffness in one direction"]
 
     def _rest(self) -> bool:
+        """Come to rest, by the other method in turn where one is too slow; whether it worked."""
+        for _ in range(_TURNS if self.may_change else 1):
+            if self._settle():
+                return True
+            if self.may_change:
+                self.turns += 1
+                self.process.take("lbfgs" if self.process.method == "newton" else "newton")
+        return False
+
+    def _settle(self) -> bool:
         """Repeat the static solve until all that lags agrees with the shape; whether it does."""
-        process = self.process
+        process, residuals = self.process, list[float]()
         record, iterations, dt = process.record(), 0, _LONGER * process.dt
-        for _ in range(_ROUNDS):
+        for count in range(1, _ROUNDS + 1):
             limit = min(_REST_ITERATIONS, _MOST_ITERATIONS - iterations)
             record = process.approach_rest(dt, record, limit)
             self.add(_REST, record)
@@ -185,7 +199,9 @@ class _Run:
             dt *= 2.0
             if not unrest(process, record):
                 return True
-            if iterations >= _MOST_ITERATIONS:
+            residuals.append(record.residual)
+            left = min(_ROUNDS - count, count * (_MOST_ITERATIONS / max(iterations, 1) - 1.0))
+            if left <= 0 or (self.may_change and too_slow(residuals, RESIDUAL, left)):
                 break
         return False
 
@@ -199,7 +215,10 @@ class _Run:
             for name in Record._fields
         }
         foundation, free = process.foundation, np.full_like(process.x, np.nan)
-        seconds = time.process_time() - self.clock
+        spent = {
+            "cpu_seconds": time.process_time() - self.clock,
+            "changes_of_method": float(self.turns),
+        }
         return Solution(
             cover=process.cover,
             positions=process.x,
@@ -217,7 +236,7 @@ class _Run:
             status="not converged" if causes else "converged",
             reason="; ".join(causes),
             history=MappingProxyType(columns | {"cpu_seconds": np.array(self.seconds)}),
-            figures=MappingProxyType(figures(process, self.records) | {"cpu_seconds": seconds}),
+            figures=MappingProxyType(figures(process, self.records) | spent),
             settings=self.settings,
             version=__version__,
         )

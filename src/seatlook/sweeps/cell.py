@@ -28,6 +28,8 @@ from seatlook.model.progress import silent
 from seatlook.solver import SETTINGS
 from seatlook.sweeps.irregularity import draw, irregular
 
+_SAYS = 2  # raised when what a cell says of its cover changes
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cell:
@@ -103,7 +105,7 @@ def _check(chosen: tuple[str, ...], known: Any, path: Path) -> None:
 def _named(spec: dict[str, Any], digest: str) -> Cell:
     # The digest stands for the contents of all files; where they lie does not matter.
     content = {k: v for k, v in spec.items() if k != "scene"} | {
-        "digest": digest, "solver": SETTINGS, "version": __version__,
+        "digest": digest, "solver": SETTINGS, "version": __version__, "says": _SAYS,
     }  # fmt: skip
     text = json.dumps(content, sort_keys=True)
     return Cell(
@@ -162,8 +164,8 @@ def _run(name: str, spec: dict[str, Any], out: Path) -> None:
     result = {
         "cell": name,
         **{k: v for k, v in spec.items() if k != "scene"},
-        "status": solution.status,
-        "reason": solution.reason,
+        "status": case.resolution.status,
+        "reason": case.resolution.reason,
         "zones": [row.values() for row in case.assessment.zones],
     }
     files.write_text(out / f"{name}.json", json.dumps(result, indent=1, sort_keys=True) + "\n")

@@ -14,7 +14,7 @@ from seatlook.chain.case import Case
 from seatlook.errors import InputError
 from seatlook.model import Cover, FloatArray
 from seatlook.sweeps.cell import Cell, failed
-from seatlook.sweeps.summary import rows
+from seatlook.sweeps.summary import at_rest, rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +59,7 @@ def chance(cells: Sequence[Cell], folder: Path) -> Chance:
         None of them converged.
     """
     table = rows(cells, folder)
-    good = {row["cell"] for row in table if row["status"] == "converged"}
+    good = {row["cell"] for row in table if at_rest(row)}
     left_out = len(table) - len(good) + sum(failed(cell, folder) for cell in cells)
     above = [np.load(folder / f"{c.name}.npy") > 1 for c in cells if c.name in good]
     if not above:

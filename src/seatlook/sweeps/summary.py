@@ -73,7 +73,8 @@ def rows(cells: Sequence[Cell], folder: Path) -> list[dict[str, Any]]:
         if not finished(cell, folder):
             continue
         result = json.loads((folder / f"{cell.name}.json").read_text(encoding="utf-8"))
-        row = {"cell": cell.name, "variant": result["variant"], "status": result["status"]}
+        row = {"cell": cell.name, "variant": result["variant"]}
+        row |= {"status": result["status"], "reason": result.get("reason", "")}
         for word in result["set"]:
             key, _, value = word.partition("=")
             row[key] = value
@@ -81,6 +82,11 @@ def rows(cells: Sequence[Cell], folder: Path) -> list[dict[str, Any]]:
             row[tolerance["name"]] = value
         table.append(row | overall(result["zones"]))
     return table
+
+
+def at_rest(row: dict[str, Any]) -> bool:
+    """Whether the cover of a row has come to rest, be it resolved by its mesh or not."""
+    return str(row["status"]) != "not converged"
 
 
 def overall(zones: Sequence[dict[str, Any]]) -> dict[str, float]:
@@ -94,14 +100,14 @@ def overall(zones: Sequence[dict[str, Any]]) -> dict[str, float]:
 def causes(cells: Sequence[Cell], folder: Path) -> tuple[Cause, ...]:
     """Rank correlation of every irregular input, the strongest first.
 
-    Only cells that converged count.
+    Only cells that converged count, resolved or not.
 
     Raises
     ------
     InputError
         Fewer than ``FEWEST`` of them.
     """
-    good = [r for r in rows(cells, folder) if r["status"] == "converged"]
+    good = [r for r in rows(cells, folder) if at_rest(r)]
     names = [i["name"] for i in json.loads(cells[0].spec)["inputs"]]
     if len(good) < FEWEST:
         raise InputError.single(

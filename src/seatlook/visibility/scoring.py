@@ -11,6 +11,7 @@ from seatlook.errors import InputError
 from seatlook.model import Limit, Scene, WrinkleMap
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES, Verdict
+from seatlook.results.resolution import resolution
 from seatlook.visibility.grid import Grid, score_grid
 from seatlook.visibility.heights import Ladder, amplitude_ladder
 from seatlook.visibility.view import View
@@ -73,8 +74,13 @@ def score_scene(
     progress("score", what="amplitude ladder")
     ladder = amplitude_ladder(view, io.read_material(BLACK).appearance)
     grid = grid.on_ladder(ladder)
+    resolved = bool(scored) and resolution(view.solution).resolved
     verdicts = tuple(
-        Verdict(limit=limit, value=_value(limit, _zones_of(limit, scene, view), grid, ladder))
+        Verdict(
+            limit=limit,
+            value=_value(limit, _zones_of(limit, scene, view), grid, ladder),
+            resolved=resolved,
+        )
         for limit in scored
     )
     return SceneScore(view=view, null=null, grid=grid, ladder=ladder, verdicts=verdicts)

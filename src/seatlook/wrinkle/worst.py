@@ -16,6 +16,7 @@ from seatlook.model import Cover, FloatArray, IntArray, Points, Solution, Stitch
 from seatlook.wrinkle.section import Section, section
 
 Cause = Literal["stretch", "compression"]
+NO_ADVICE = "none: the mesh does not resolve this wrinkle"
 _STATIONS = 7  # sections along a wrinkle, of which the deepest counts
 _LONGEST_SECTION = 0.03  # [m] to each side of a wrinkle
 _EQUAL = 0.005  # sewn lengths that differ by less count as equal
@@ -38,7 +39,8 @@ class Wrinkle:
     stretch_share : float in [0, 1]      part of W2 that is W_stretch
     near_kind, near, distance : nearest seam, hook or frame, its name, and how far [m]
     ease : float                  excess of the longer sewn line over the other; 0 for no seam
-    advice : one sentence
+    resolved : whether the mesh carries it
+    advice : one sentence; that there is none where it does not
     """
 
     panel: str
@@ -59,14 +61,24 @@ class Wrinkle:
     distance: float
     ease: float
     advice: str
+    resolved: bool = True
 
 
 def worst_wrinkles(
-    solution: Solution, indices: WrinkleMap, *, count: int = 5, level: float = 1.0
+    solution: Solution,
+    indices: WrinkleMap,
+    *,
+    count: int = 5,
+    level: float = 1.0,
+    unresolved: npt.NDArray[np.bool_] | None = None,
 ) -> tuple[Wrinkle, ...]:
     """Rank the connected regions of W2 above ``level`` by the integral of W2 over their area.
 
     Regions end at panel edges. Fewer than ``count`` come back where there are fewer.
+
+    Parameters
+    ----------
+    unresolved : (m,) bool   faces that the mesh does not carry; a wrinkle with one has no advice
     """
     cover = solution.cover
     region = _regions(cover.faces, indices.w2 > level)
@@ -74,7 +86,14 @@ def worst_wrinkles(
     numbered = region >= 0
     total = np.bincount(region[numbered], weight[numbered])
     ranked = np.argsort(-total, kind="stable")[:count]
-    return tuple(_describe(solution, indices, np.flatnonzero(region == r)) for r in ranked)
+    result = (_describe(solution, indices, np.flatnonzero(region == r)) for r in ranked)
+    if unresolved is None:
+        return tuple(result)
+    bad = set(region[unresolved].tolist())
+    return tuple(
+        replace(wrinkle, resolved=False, advice=NO_ADVICE) if r in bad else wrinkle
+        for r, wrinkle in zip(ranked.tolist(), result, strict=True)
+    )
 
 
 def section_across(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
+import numpy.typing as npt
 
 from seatlook.model import Cover, FloatArray, WrinkleMap
 from seatlook.wrinkle.recovery import recovery_error
@@ -24,7 +25,9 @@ class ZoneRow:
     area : [m2]
     element_size : [m]              mean edge length h of the zone's faces at rest
     stretch_share : [1] in [0, 1]   part of the zone's W2 that is W_stretch; 0 where W2 is 0
-    w2_error : [1]                  rms of W2 against its recovered field, an estimate of its error
+    w2_face_rms : [1]               rms of W2 against its recovered field, face by face; it says
+        nothing of the error of the mean
+    resolved : whether the mesh carries all of the zone
     figures : name -> value         of every index of the registry
     """
 
@@ -32,30 +35,38 @@ class ZoneRow:
     area: float
     element_size: float
     stretch_share: float
-    w2_error: float
+    w2_face_rms: float
+    resolved: bool = True
     figures: MappingProxyType[str, float]
 
     def __getitem__(self, name: str) -> float:
         return self.figures[name]
 
-    def values(self) -> dict[str, str | float]:
+    def values(self) -> dict[str, str | float | bool]:
         """Return the whole row as plain values, the figures last."""
         return {
             "zone": self.zone,
             "area": self.area,
             "element_size": self.element_size,
             "stretch_share": self.stretch_share,
-            "w2_error": self.w2_error,
+            "w2_face_rms": self.w2_face_rms,
+            "resolved": self.resolved,
             **self.figures,
         }
 
 
-def zone_table(cover: Cover, values: Mapping[str, FloatArray]) -> tuple[ZoneRow, ...]:
+def zone_table(
+    cover: Cover,
+    values: Mapping[str, FloatArray],
+    *,
+    unresolved: npt.NDArray[np.bool_] | None = None,
+) -> tuple[ZoneRow, ...]:
     """Summarise indices zone by zone, empty zones left out.
 
     Parameters
     ----------
     values : name of an index of the registry -> (m,) in its unit; W2 and W_stretch among them
+    unresolved : (m,) bool   faces that the mesh does not carry
     """
     area = cover.rest_area
     error = recovery_error(cover.rest, cover.faces, values["w2"])
@@ -74,7 +85,8 @@ def zone_table(cover: Cover, values: Mapping[str, FloatArray]) -> tuple[ZoneRow,
                 area=float(weight.sum()),
                 element_size=float(side[inside].mean()),
                 stretch_share=stretch / w2 if w2 > 0 else 0.0,
-                w2_error=mean(error[inside] ** 2, weight) ** 0.5,
+                w2_face_rms=mean(error[inside] ** 2, weight) ** 0.5,
+                resolved=unresolved is None or not unresolved[inside].any(),
                 figures=MappingProxyType(
                     {
                         figure: STATISTICS[statistic](values[index.name][inside], weight)

@@ -25,7 +25,7 @@ def zone(name: str, *, share: float, stretch: float = 0.5, area: float = 0.01) -
         area=area,
         stretch_share=stretch,
         element_size=0.007,
-        w2_error=0.01,
+        w2_face_rms=0.01,
         figures=MappingProxyType({"w2_p95": 0.2 + share, "w2_area_share": share}),
     )
 

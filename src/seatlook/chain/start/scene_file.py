@@ -16,6 +16,7 @@ from seatlook.io.surface.axes import Axes, Unit, Up
 from seatlook.io.templates import write_template
 from seatlook.mesh.mending.mend import AS_IT_IS, Mending
 from seatlook.model import Fabric, FloatArray, Foam, FoamMaterial, Frame, Hook, Pose
+from seatlook.results.resolution import largest_size
 from seatlook.solver import foam_wavelength
 
 SCENE, CURVES = "scene.toml", "curves.toml"
@@ -26,6 +27,7 @@ _TEMPLATE = Path(__file__).with_name("scene.toml.j2")
 _BULB = np.array([1.2, 0.53, 1.15])  # place of a bulb, in radii of the foam from its middle
 _RADIUS = 0.38  # m, of a foam on which a bulb is exposed with ...
 _EV100 = 5.0
+_HALVES = 2.0  # mm, from which an element size is rounded to halves
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -168,8 +170,9 @@ def hook_words(hook: Hook) -> str:
 
 
 def element_size(fabric: Fabric, foam: FoamMaterial) -> float:
-    """Edge length [mm] that a first scene takes: an eighth of a wrinkle on this foam, from 2 mm."""
-    return max(2.0, int(2e3 * foam_wavelength(fabric, foam) / 8) / 2)
+    """Edge length [mm] that a first scene takes: what resolves a wrinkle on this foam."""
+    wave = largest_size(foam_wavelength(fabric, foam))
+    return int(2.0 * wave) / 2.0 if wave >= _HALVES else wave
 
 
 def _size_notes(path: Path, surface: io.FoamSurface, *, guessed: bool) -> tuple[str, ...]:

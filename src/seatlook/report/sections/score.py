@@ -216,6 +216,7 @@ def score_values(
                 "measure": v.limit.measure,
                 "value": v.value if math.isfinite(v.value) else None,
                 "maximum": v.limit.maximum,
+                "resolved": v.resolved,
                 "kept": v.kept,
             }
             for v in score.verdicts
@@ -268,7 +269,7 @@ def _cell(score: SceneScore, texture: str, rig: str) -> str:
 
 def score_checks(score: SceneScore) -> tuple[Check, ...]:
     """Limits of [accept] on the score, and what was found."""
-    return tuple(_check(v.limit, number(v.value), v.kept) for v in score.verdicts)
+    return tuple(_check(v.limit, number(v.value) + v.note, v.kept) for v in score.verdicts)
 
 
 def _check(limit: Limit, value: str, kept: bool) -> Check:

@@ -12,7 +12,7 @@ from seatlook.solver.methods.factor import Preconditioner
 from seatlook.solver.methods.lbfgs import Descent, Lbfgs, Potential
 
 Method = Literal["lbfgs", "newton"] | Explicit
-MethodName = Literal["lbfgs", "newton", "explicit"]
+MethodName = Literal["auto", "lbfgs", "newton", "explicit"]
 
 
 class Minimiser(Protocol):
@@ -37,8 +37,10 @@ class Minimiser(Protocol):
 MINIMISERS: dict[str, Callable[[tuple[int, int]], Minimiser]] = {"lbfgs": Lbfgs, "newton": Lbfgs}
 
 
-def method_of(method: MethodName | Explicit) -> Method:
-    """Return the method of a name; "explicit" is ``Explicit()``.
+def method_of(
+    method: MethodName | Explicit, *, first: Literal["lbfgs", "newton"] = "lbfgs"
+) -> Method:
+    """Return the method of a name; "explicit" is ``Explicit()``, "auto" begins with ``first``.
 
     Raises
     ------
@@ -51,11 +53,13 @@ def method_of(method: MethodName | Explicit) -> Method:
     """
     if method == "explicit":
         return Explicit()
+    if method == "auto":
+        return first
     if isinstance(method, Explicit) or method in MINIMISERS:
         return method
     names = ", ".join(map(repr, MINIMISERS))
     raise InputError.single(
-        "method", got=repr(method), expected=f"{names}, 'explicit' or Explicit(...)"
+        "method", got=repr(method), expected=f"{names}, 'explicit' or Explicit(...), or 'auto'"
     )
 
 

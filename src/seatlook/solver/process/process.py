@@ -106,12 +106,9 @@ class Process:
         np.copyto(self.x, cover.positions)
         self.v = np.zeros_like(self.x)
         self.time = 0.0
-        self.method: Method = method_of(settings.method)
-        self._minimiser = minimiser(self.method, self.state.shape)
         self._factor: Preconditioner | None = None
         self._nearest: NearestHessian | None = None
-        if self.method == "newton":
-            self._nearest = NearestHessian(self.sheet, cover.positions, self.ties.pattern())
+        self.take(method_of(settings.method))
         self._integrator: Integrator | None = None
         self._taut, self._evaluations, self._fresh = _TAUT, 0, True
         # Asked for several times between two minimisations, at one and the same shape.
@@ -137,6 +134,14 @@ class Process:
             np.copyto(self.foundation.friction.anchor, start.friction_anchor)
         if start.strain_peak is not None:
             self.sheet.membrane.remember(start.strain_peak)
+
+    def take(self, method: Method) -> None:
+        """Go on by this method."""
+        self.method: Method = method
+        self._factor, self._nearest = None, None
+        self._minimiser = minimiser(method, self.state.shape)
+        if method == "newton":
+            self._nearest = NearestHessian(self.sheet, self.cover.positions, self.ties.pattern())
 
     def step(self, step: Step, *, refactor: bool) -> Record:
         """Advance by one time step; ``refactor`` renews what is made from the stiffness."""

@@ -15,16 +15,17 @@ class SolverSettings:
 
     Parameters
     ----------
-    method : "lbfgs" with prefactored scalar matrices; "newton" with the projected Hessian of chords
-        and hinges factored every few iterations, for limp sheets that turn far; both test at rest
-        whether the balance is stable, and leave it if it is not; "explicit" central
-        differences with the time step their mesh allows, or ``Explicit(time_step=...,
+    method : "auto" begins with L-BFGS and goes over to Newton where L-BFGS is too slow to come to
+        rest, and back; "lbfgs" with prefactored scalar matrices; "newton" with the projected
+        Hessian of chords and hinges factored every few iterations, for limp sheets that turn far;
+        both test at rest whether the balance is stable, and leave it if it is not; "explicit"
+        central differences with the time step their mesh allows, or ``Explicit(time_step=...,
         scale_mass=True)``
     dt : float [s]      time step; what lags is updated once in it
     iterations : int    most iterations in a time step
     """
 
-    method: MethodName | Explicit = "lbfgs"
+    method: MethodName | Explicit = "auto"
     dt: float = 0.02
     iterations: int = 8
 
@@ -42,8 +43,8 @@ class SheetSettings:
 
     Parameters
     ----------
-    method : "newton" (with a softened membrane first where the sheet is thin), "lbfgs" with a
-        prefactored matrix, or "explicit" (damped, with masses that make all waves equally slow;
+    method : "newton" or "auto" (with a softened membrane first where the sheet is thin), "lbfgs"
+        with a prefactored matrix, or "explicit" (damped, masses make all waves equally slow;
         ``Explicit(time_step=...)`` moves in real time with the sheet's own mass). With each the
         exact Hessian is looked at last: an equilibrium that is unstable is left.
     steps : loads and prescribed movements are applied in this many equal steps; strains count as
