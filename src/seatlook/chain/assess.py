@@ -156,6 +156,7 @@ class Assessment:
             self.solution.cover,
             {name: self.values(name) for name in INDICES},
             unresolved=self.resolution.unresolved,
+            known=self.solution.figures,
         )
 
     @property

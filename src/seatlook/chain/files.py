@@ -66,8 +66,10 @@ def picture_paths(scene: Scene) -> dict[tuple[str, str], str]:
 
 
 def write_zones(zones: Sequence[ZoneRow], path: Path) -> None:
-    """Write the zone table as CSV, one row per zone."""
-    _write([row.values() for row in zones], path)
+    """Write the zone table as CSV, one row per zone; empty where a companion is not known."""
+    rows = [row.values() for row in zones]
+    heads = tuple(dict.fromkeys(head for row in rows for head in row))
+    io.write_table(path, heads, [tuple(row.get(head) for head in heads) for row in rows])
 
 
 def write_shape(assessment: Assessment, out: Path) -> tuple[str, ...]:

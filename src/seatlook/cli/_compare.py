@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -18,8 +18,11 @@ from seatlook.cli._options import (
     exit_code_of,
     seat_of,
 )
-from seatlook.cli._output import Json, note, progress, table
+from seatlook.cli._output import Json, note, progress, say, table
 from seatlook.errors import InputError
+
+if TYPE_CHECKING:
+    from seatlook.chain.case import Case
 
 
 def compare(
@@ -28,6 +31,7 @@ def compare(
     *,
     out: Out,
     result: Annotated[tuple[str, ...], Parameter(negative=())] = (),
+    tolerance: float | None = None,
     changes: Changes = (),
     score: Scored = True,
     single_file: SingleFile = False,
@@ -46,8 +50,11 @@ def compare(
     ----------
     result
         NAME=RESULT.npz: take this result of the scene called NAME; may be given more than once.
+    tolerance
+        Solve each scene to this relative error of its zone means, as "seatlook precision" does:
+        materials are compared at equal error, not at equal element size.
     """
-    from seatlook.comparison.compare import variant_names
+    from seatlook.comparison.compare import at_equal_error, variant_names
     from seatlook.pbr import offscreen_backend
     from seatlook.seat import compare_into
 
@@ -66,14 +73,18 @@ def compare(
         table(("variant", "texture", "rig"), cells, json=json)
         return 0
     offscreen_backend()
+    variants: dict[str, Case] = dict(zip(names, seats, strict=True))
     with progress() as show:
+        if tolerance is not None:
+            variants = at_equal_error(variants, tolerance, show)
         outcome = compare_into(
-            dict(zip(names, seats, strict=True)), out, results=_results(result, names),
+            variants, out, results=_results(result, names),
             score=score, single_file=single_file, progress=show,
         )  # fmt: skip
-    differences = outcome.comparison.table()
+    differences = outcome.comparison.judged()
     table(differences.heads, differences.rows, json=json)
     note(f"gallery: {outcome.page}")
+    say(*filter(None, [outcome.comparison.unequal_error]))
     found = outcome.resolutions
     return exit_code_of(*found.values(), names=tuple(found), preview=preview)
 

@@ -21,7 +21,7 @@ from seatlook.cli._options import (
     note_coarse,
     seat_of,
 )
-from seatlook.cli._output import Json, note, progress, say, table
+from seatlook.cli._output import Json, note, progress, say, show_json, table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -112,16 +112,26 @@ def print_zones(zones: Sequence[ZoneRow], found: Resolution | None, *, json: boo
 
     if json and found is not None:
         rows = [row.values() | {"status": found.status, "reason": found.reason} for row in zones]
-        table(list(rows[0]), [tuple(row.values()) for row in rows], json=True)
+        show_json(rows)
         return
     figures = [figure for index in INDICES.values() for figure, _, _ in index.columns]
     table(
-        ("zone", "area_cm2", *figures, "stretch_share", "element_size_mm"),
+        (
+            "zone",
+            "area_cm2",
+            *figures,
+            "w2_mesh_error",
+            "w2_scatter",
+            "stretch_share",
+            "element_size_mm",
+        ),
         [
             (
                 row.zone,
                 1e4 * row.area,
                 *(row[figure] for figure in figures),
+                row.w2_mesh_error,
+                row.w2_scatter,
                 row.stretch_share,
                 1e3 * row.element_size,
             )

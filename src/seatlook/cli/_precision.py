@@ -23,7 +23,8 @@ def precision(
     """Solve a scene no finer than asked, and print the error that was reached, zone by zone.
 
     Element size and time step follow from the tolerance and the wavelength of the fabric on its
-    foam; a second, coarser mesh tells the error. Ends with 3 if it is missed.
+    foam. Two coarser meshes tell the error, some seeds of the coarsest the scatter. Ends with 3 if
+    the tolerance is missed. The result carries both for "seatlook compare".
 
     Example: seatlook precision seat.toml --tolerance 0.1 --out seat.npz
 
@@ -41,13 +42,17 @@ def precision(
     if out is not None:
         io.write_result(precise.solution, out)
     table(
-        ("zone", "w2_mean", "error"),
-        [(zone.zone, zone.w2_mean, zone.error) for zone in precise.zones],
+        ("zone", "w2_mean", "error", "scatter", "status"),
+        [
+            (zone.zone, zone.w2_mean, zone.error, zone.scatter, precise.resolution.status)
+            for zone in precise.zones
+        ],
         json=json,
     )
     size, wave = 1e3 * precise.plan.element_size, 1e3 * precise.plan.wavelength
     say(f"elements of {size:.3g} mm, {wave / size:.3g} to a wave of {wave:.3g} mm; "
         f"error {precise.error:.2g}, asked for {tolerance:.2g}")  # fmt: skip
-    if precise.coarse.status != "converged":
-        say(f"the coarser mesh is not converged: {precise.coarse.reason}")
+    orders = ", ".join(f"{kind} {order:.2g}" for kind, order in precise.orders.items())
+    say(f"observed orders: {orders}; scatter from {len(precise.others)} seeds")
+    say(*(f"a coarser mesh is not converged: {reason}" for reason in precise.unconverged))
     return exit_code_of(precise.resolution) or (0 if precise.reached else 3)

@@ -8,9 +8,12 @@ from pathlib import Path
 from types import MappingProxyType
 
 from seatlook import io, pbr
+from seatlook.assembly import with_mesh
 from seatlook.chain.case import Case
+from seatlook.chain.companions import differs, seeds_for
 from seatlook.chain.draw import map_ends
 from seatlook.chain.files import RESULT
+from seatlook.chain.precision import solve_to
 from seatlook.comparison.cells import Cell, Contrast, cell_table
 from seatlook.errors import InputError, did_you_mean
 from seatlook.files import file_names
@@ -21,6 +24,7 @@ from seatlook.model.zones import FREE_EDGE
 from seatlook.wrinkle import INDICES, figure_names
 
 Variant = Case | Scene | Path | str
+_EQUAL = 1.2  # ratio of estimated errors up to which they count as equal
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,6 +158,51 @@ class Comparison:
             rows=tuple((zone, *means, *away) for zone, means, away in rows),
         )
 
+    def judged(self) -> Table:
+        """Zones by variants as ``table``, whether they differ, how many seeds that would take.
+
+        They differ where the means are apart by more than mesh errors and scatter of both; None
+        where those are not known, which ``precision`` measures. The seeds are those of each
+        variant from which a difference of 20 % is seen, four times in five.
+        """
+        plain = self.table()
+        rows = {
+            name: {row.zone: row for row in case.assessment.zones}
+            for name, case in self.variants.items()
+        }
+        figures = {name: case.solution.figures for name, case in self.variants.items()}
+        first, *others = self.variants
+
+        def answers(zone: str) -> tuple[str | float | None, ...]:
+            base = rows[first][zone]
+            pairs = [(name, rows[name].get(zone)) for name in others]
+            apart = [None if row is None else differs(base, row) for _, row in pairs]
+            needed = [None if row is None else seeds_for(row, figures[name]) for name, row in pairs]
+            words = [None if answer is None else "yes" if answer else "no" for answer in apart]
+            return (*words, *needed)
+
+        return Table(
+            heads=(
+                *plain.heads,
+                *(f"differs: {name}" for name in others),
+                *(f"seeds for 20 %: {name}" for name in others),
+            ),
+            rows=tuple((*row, *answers(str(row[0]))) for row in plain.rows),
+        )
+
+    @property
+    def unequal_error(self) -> str:
+        """A sentence where variants are not compared at equal error; "" where they are."""
+        waves = {name: case.resolution.waves for name, case in self.variants.items()}
+        errors = {name: max(wave.error for wave in own) for name, own in waves.items() if own}
+        if not errors or max(errors.values()) <= _EQUAL * min(errors.values()):
+            return ""
+        text = ", ".join(f"{name} {100 * error:.2g} %" for name, error in errors.items())
+        return (
+            f"not compared at equal error: estimated error of W2 on a wave: {text}; "
+            "a tolerance solves each to the same"
+        )
+
     def show(self, a: tuple[str, str, str], b: tuple[str, str, str]) -> Contrast:
         """Lay picture ``b`` over ``a``; a notebook shows a slider between them."""
         return Contrast(a=self[a], b=self[b])
@@ -214,6 +263,30 @@ def compare(
         case.solve(None if name in results else kept, resume=True)
     first = next(iter(variants.values()))
     return Comparison(variants=MappingProxyType(variants), camera=first.camera(None))
+
+
+def at_equal_error(
+    variants: Mapping[str, Case], tolerance: float, progress: Progress = silent
+) -> dict[str, Case]:
+    """Solve each variant to one relative error of its zone means, on a mesh of its own.
+
+    Materials are compared at equal error, not at equal element size. The results carry their
+    errors, so that ``Comparison.judged`` can say what differs.
+
+    Raises
+    ------
+    InputError
+        As ``solve_to``, and what ``Case.check`` finds, before the first solve.
+    SolverError
+    """
+    for case in variants.values():
+        case.check()
+    result = {}
+    for name, case in variants.items():
+        precise = solve_to(case.scene, tolerance, progress=progress)
+        made = with_mesh(case.scene, element_size=precise.plan.element_size)
+        result[name] = Case(made, solution=precise.solution)
+    return result
 
 
 def named_cases(

@@ -224,6 +224,7 @@ def _differences(
             **(
                 {_VISIBILITY: _against(comparison, scores.table())} if scores and scores.vwi else {}
             ),
+            "Do the means of W2 differ": _named(comparison, comparison.judged(), "w2_mean"),
             **{name: _zones(comparison, measure) for name, measure in _TABLES.items()},
         }
     )
@@ -231,7 +232,11 @@ def _differences(
 
 def _zones(comparison: Comparison, measure: str) -> Table:
     """The table of a measure, which is named above it and not in every head."""
-    table = comparison.table(measure)
+    return _named(comparison, comparison.table(measure), measure)
+
+
+def _named(comparison: Comparison, table: Table, measure: str) -> Table:
+    """A table without the measure in its heads."""
     named = replace(table, heads=tuple(h.removeprefix(f"{measure}: ") for h in table.heads))
     return _against(comparison, named)
 
@@ -273,6 +278,8 @@ def _warnings(comparison: Comparison, scores: VariantScores | None) -> Iterator[
     for name, variant in comparison.variants.items():
         if not variant.resolution.resolved:
             yield f"{name} is {variant.resolution.sentence}."
+    if comparison.unequal_error:
+        yield f"Variants are {comparison.unequal_error}."
     for name, reason in (scores.refused if scores else {}).items():
         yield f"{name} has no score: {reason}"
     cameras = {v.scene.cameras[0].name for v in comparison.variants.values()}

@@ -98,6 +98,8 @@ def _zones(evaluation: Evaluation) -> Table:
             "area [cm2]",
             *(head for _, head, _ in columns),
             "stretch [% of W2]",
+            "W2 mean ± mesh",
+            "± seeds",
             "resolved",
             "h [mm]",
         ),
@@ -107,6 +109,8 @@ def _zones(evaluation: Evaluation) -> Table:
                 1e4 * row.area,
                 *(factor * row[figure] for figure, _, factor in columns),
                 100 * row.stretch_share,
+                row.w2_mesh_error,
+                row.w2_scatter,
                 "yes" if row.resolved else "no",
                 1e3 * row.element_size,
             )

@@ -28,6 +28,8 @@ class ZoneRow:
     w2_face_rms : [1]               rms of W2 against its recovered field, face by face; it says
         nothing of the error of the mean
     resolved : whether the mesh carries all of the zone
+    w2_mesh_error : [1]             error of the mean W2 by its mesh; None where not measured
+    w2_scatter : [1]                95 % half-width of the mean W2 for other seeds; None likewise
     figures : name -> value         of every index of the registry
     """
 
@@ -37,13 +39,16 @@ class ZoneRow:
     stretch_share: float
     w2_face_rms: float
     resolved: bool = True
+    w2_mesh_error: float | None = None
+    w2_scatter: float | None = None
     figures: MappingProxyType[str, float]
 
     def __getitem__(self, name: str) -> float:
         return self.figures[name]
 
     def values(self) -> dict[str, str | float | bool]:
-        """Return the whole row as plain values, the figures last."""
+        """Return the whole row as plain values, the figures last; companions that are known."""
+        companions = {"w2_mesh_error": self.w2_mesh_error, "w2_scatter": self.w2_scatter}
         return {
             "zone": self.zone,
             "area": self.area,
@@ -51,6 +56,7 @@ class ZoneRow:
             "stretch_share": self.stretch_share,
             "w2_face_rms": self.w2_face_rms,
             "resolved": self.resolved,
+            **{name: value for name, value in companions.items() if value is not None},
             **self.figures,
         }
 
@@ -60,6 +66,7 @@ def zone_table(
     values: Mapping[str, FloatArray],
     *,
     unresolved: npt.NDArray[np.bool_] | None = None,
+    known: Mapping[str, float] = MappingProxyType({}),
 ) -> tuple[ZoneRow, ...]:
     """Summarise indices zone by zone, empty zones left out.
 
@@ -67,6 +74,7 @@ def zone_table(
     ----------
     values : name of an index of the registry -> (m,) in its unit; W2 and W_stretch among them
     unresolved : (m,) bool   faces that the mesh does not carry
+    known : figures of a result, with the companions of its zones where they were measured
     """
     area = cover.rest_area
     error = recovery_error(cover.rest, cover.faces, values["w2"])
@@ -87,6 +95,7 @@ def zone_table(
                 stretch_share=stretch / w2 if w2 > 0 else 0.0,
                 w2_face_rms=mean(error[inside] ** 2, weight) ** 0.5,
                 resolved=unresolved is None or not unresolved[inside].any(),
+                **_companions(name, known),
                 figures=MappingProxyType(
                     {
                         figure: STATISTICS[statistic](values[index.name][inside], weight)
@@ -98,6 +107,16 @@ def zone_table(
             )
         )
     return tuple(rows)
+
+
+def companion_keys(zone: str) -> tuple[str, str]:
+    """Names of a zone's mesh error and scatter among the figures of a result."""
+    return f"zone/{zone}/w2_mesh_error", f"zone/{zone}/w2_scatter"
+
+
+def _companions(zone: str, known: Mapping[str, float]) -> dict[str, float | None]:
+    error, scatter = (known.get(key) for key in companion_keys(zone))
+    return {"w2_mesh_error": error, "w2_scatter": scatter}
 
 
 def map_top(indices: WrinkleMap) -> float:

@@ -1,0 +1,240 @@
+"""The two companions of a zone's mean W2: the error of its mesh, and the scatter over seeds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+from scipy.stats import norm, t
+
+from seatlook.model import Solution
+from seatlook.wrinkle import ZoneRow
+from seatlook.wrinkle.zone import companion_keys
+
+SURE = 0.95  # of single solves that differ from the mean of all seeds by less than the scatter
+ORDERS = (1.0, 2.0)  # between which means converge: of a kink, and of a smooth wave
+_CAUTION = 0.4  # by which an observed order is taken lower: scatter makes it uncertain
+_SEEDS = "scatter_seeds"  # figure of a result
+_POWER = 0.8  # chance to see a difference that is there, of the number of seeds
+
+
+@dataclass(frozen=True, slots=True)
+class ZoneMean:
+    """Mean W2 of a zone with both companions, all [1].
+
+    Parameters
+    ----------
+    error : of the mesh; nan where it is not known
+    scatter : 95 % half-width of what another seed gives; nan where it is not known
+    """
+
+    zone: str
+    w2_mean: float
+    error: float
+    scatter: float = math.nan
+
+    @property
+    def bound(self) -> float:
+        """How far the mean may be from that of all seeds on a mesh without error."""
+        return self.error + self.scatter
+
+
+def observed_order(
+    fine: Sequence[ZoneRow],
+    middle: Sequence[ZoneRow],
+    coarse: Sequence[Sequence[ZoneRow]],
+    ratio: float,
+    zones: Sequence[str],
+) -> float:
+    """Order at which the means of some zones converge, between 1 and 2.
+
+    Differences of single zones are mostly scatter; their root mean square over all zones of a kind
+    is not. Where scatter hides the order it comes out low, which is the safe side.
+
+    Parameters
+    ----------
+    coarse : rows of each seed of the coarsest mesh, whose mean is taken
+    ratio : of neighbouring element sizes
+    """
+    a, b, c = _means(fine), _means(middle), _mean_of_seeds(coarse)
+    steps = np.array([(b[z] - a[z], c[z] - b[z]) for z in zones if z in a and z in b and z in c])
+    steps = steps[np.isfinite(steps).all(axis=1)] if len(steps) else np.zeros((0, 2))
+    if not len(steps):
+        return ORDERS[0]
+    near, far = np.sqrt(np.square(steps).mean(axis=0))
+    if near == 0.0:
+        return ORDERS[1]
+    order = math.log(max(far / near, 1e-9)) / math.log(ratio)
+    return float(np.clip(order, *ORDERS))
+
+
+def mesh_errors(
+    fine: Sequence[ZoneRow],
+    middle: Sequence[ZoneRow],
+    coarse: Sequence[Sequence[ZoneRow]],
+    ratio: float,
+    orders: Mapping[str, float],
+) -> dict[str, float]:
+    """Error of the mean W2 of each zone of the finest mesh; nan for a zone of one mesh only.
+
+    The difference between the two finer meshes, extrapolated at the zone's order; or that of the
+    two coarser ones, scaled by the same order, if it says more. What seeds scatter is taken out of
+    both, as it is a companion of its own. Meshes may agree by chance, so no
+    zone errs by less than the root mean square share of all zones of its order.
+
+    Parameters
+    ----------
+    coarse, ratio : as in ``observed_order``
+    orders : zone -> its order
+    """
+    a, b, c = _means(fine), _means(middle), _mean_of_seeds(coarse)
+    noise = _deviation_of_seeds(coarse)
+    away = {}
+    for zone, mean in a.items():
+        spread = noise.get(zone, 0.0) * mean
+        step = abs(mean - b.get(zone, math.nan))
+        before = abs(b.get(zone, math.nan) - c.get(zone, math.nan))
+        # A difference of two solves holds the scatter of both, a mean of seeds next to none.
+        own = [_without(step, math.sqrt(2.0) * spread), _without(before, spread)]
+        own[1] /= ratio ** orders[zone]
+        away[zone] = float(np.nanmax(own)) if math.isfinite(step) else math.nan
+    result = {}
+    for zone, mean in a.items():
+        alike = [z for z in a if orders[z] == orders[zone] and a[z] > 0.0]
+        shares = np.array([away[z] / a[z] for z in alike])
+        known = shares[np.isfinite(shares)]
+        usual = float(np.sqrt(np.square(known).mean())) * mean if len(known) else 0.0
+        result[zone] = max(away[zone], usual) / (ratio ** (orders[zone] - _CAUTION) - 1.0)
+        if math.isnan(away[zone]):
+            result[zone] = math.nan
+    return result
+
+
+def scatter(seeds: Sequence[Sequence[ZoneRow]], row: ZoneRow) -> float:
+    """95 % half-width of the mean W2 of one zone for another seed; nan from fewer than two.
+
+    Seeds were solved on a coarser mesh, so their share of the mean counts, by Student's t.
+    """
+    values = np.array([v for rows in seeds if (v := _means(rows).get(row.zone)) is not None])
+    if len(values) < 2:
+        return math.nan
+    if values.mean() <= 0.0:
+        return 0.0
+    return half_width(len(values)) * float(values.std(ddof=1) / values.mean()) * row["w2_mean"]
+
+
+def half_width(seeds: int) -> float:
+    """95 % half-width of one more solve, in standard deviations of some that were made."""
+    return float(t.ppf(0.5 + 0.5 * SURE, seeds - 1)) * math.sqrt(1.0 + 1.0 / seeds)
+
+
+def seeds_needed(spread: float, share: float = 0.2) -> int:
+    """Seeds of each of two covers from which a difference of means is seen, four times in five.
+
+    Parameters
+    ----------
+    spread : standard deviation over seeds, as a share of the mean
+    share : the difference, as a share of the mean
+
+    Examples
+    --------
+    >>> seeds_needed(0.05), seeds_needed(0.28)
+    (1, 25)
+    """
+    width = float(norm.ppf(SURE) + norm.ppf(_POWER))
+    return max(1, math.ceil(2.0 * (width * spread / share) ** 2))
+
+
+def differs(a: ZoneRow, b: ZoneRow) -> bool | None:
+    """Whether two zones' means are apart by more than both errors and both scatters.
+
+    None where a companion is not known.
+    """
+    companions = (a.w2_mesh_error, b.w2_mesh_error, a.w2_scatter, b.w2_scatter)
+    if any(value is None for value in companions):
+        return None
+    mesh = sum(value for value in companions[:2] if value is not None)
+    spread = math.hypot(*(value for value in companions[2:] if value is not None))
+    return abs(a["w2_mean"] - b["w2_mean"]) > mesh + spread
+
+
+def seeds_for(row: ZoneRow, figures: Mapping[str, float], share: float = 0.2) -> int | None:
+    """Seeds from which a difference of a zone's mean by some share is seen; None if not known."""
+    count = int(figures.get(_SEEDS, 0.0))
+    if row.w2_scatter is None or count < 2 or row["w2_mean"] <= 0.0:
+        return None
+    return seeds_needed(row.w2_scatter / half_width(count) / row["w2_mean"], share)
+
+
+def with_companions(solution: Solution, zones: Sequence[ZoneMean], seeds: int) -> Solution:
+    """A result that carries the companions of its zones among its figures."""
+    figures = dict(solution.figures) | {_SEEDS: float(seeds)}
+    for zone in zones:
+        for key, value in zip(companion_keys(zone.zone), (zone.error, zone.scatter), strict=True):
+            if math.isfinite(value):
+                figures[key] = value
+    return replace(solution, figures=MappingProxyType(figures))
+
+
+def compare_means(
+    fine: Sequence[ZoneRow],
+    coarse: Sequence[ZoneRow],
+    errors: Mapping[str, float] | None = None,
+) -> tuple[tuple[ZoneMean, ...], float]:
+    """Return the mean W2 of every zone with its error, and the error over all zones.
+
+    A zone without a face on the coarser mesh has no error: nan, and does not count.
+
+    Parameters
+    ----------
+    errors : zone -> its error; the difference between both meshes if not given
+    """
+    other = _means(coarse)
+    zones = tuple(
+        ZoneMean(
+            row.zone,
+            row["w2_mean"],
+            abs(row["w2_mean"] - other.get(row.zone, math.nan))
+            if errors is None
+            else errors[row.zone],
+        )
+        for row in fine
+    )
+    area = np.array([row.area for row in fine])
+    mean = float(np.array([row["w2_mean"] for row in fine]) @ area / area.sum())
+    error = np.array([zone.error for zone in zones])
+    known = np.isfinite(error)
+    square = float(error[known] ** 2 @ area[known] / area[known].sum())
+    return zones, math.sqrt(square) / mean if mean > 0.0 else 0.0
+
+
+def _without(difference: float, noise: float) -> float:
+    """Take noise out of a difference, as variances add up."""
+    return math.sqrt(max(difference**2 - noise**2, 0.0)) if math.isfinite(difference) else math.nan
+
+
+def _deviation_of_seeds(seeds: Sequence[Sequence[ZoneRow]]) -> dict[str, float]:
+    """Standard deviation over seeds as a share of the mean; none from fewer than two."""
+    means = _mean_of_seeds(seeds)
+    if len(seeds) < 2:
+        return {}
+    rows = [_means(one) for one in seeds]
+    return {
+        zone: float(np.std([one[zone] for one in rows], ddof=1)) / mean
+        for zone, mean in means.items()
+        if mean > 0.0
+    }
+
+
+def _mean_of_seeds(seeds: Sequence[Sequence[ZoneRow]]) -> dict[str, float]:
+    """Mean over seeds of the zones that all of them have."""
+    means = [_means(rows) for rows in seeds]
+    common = set.intersection(*map(set, means)) if means else set()
+    return {zone: float(np.mean([one[zone] for one in means])) for zone in common}
+
+
+def _means(rows: Sequence[ZoneRow]) -> dict[str, float]:
+    return {row.zone: row["w2_mean"] for row in rows}
