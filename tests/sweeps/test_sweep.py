@@ -91,6 +91,7 @@ def test_a_sweep_in_python_gives_what_the_files_hold(four, tmp_path):
     means = [float(line[heads.index("w2_mean")]) for line in lines]
     assert means == [row["w2_mean"] for row in outcome.rows]
     assert (outcome.probability, outcome.notices) == ((), ())
+    assert outcome.wanting.startswith("4 of 4 cells are not resolved; the reasons are in sweep.csv")
 
 
 def test_workers_and_a_scheduler_exclude_each_other(tmp_path):

@@ -60,6 +60,6 @@ def sweep(
         table(outcome.table.heads, outcome.table.rows, json=False)
         print_rows(outcome.probability)
     note(*outcome.findings)
-    say(*outcome.notices)
+    say(*outcome.notices, *filter(None, [outcome.wanting]))
     wanting = [row for row in outcome.unresolved if not (preview and at_rest(row))]
     return 3 if outcome.failed or wanting else 0

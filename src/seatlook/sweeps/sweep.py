@@ -83,14 +83,16 @@ class SweepOutcome:
         """Rows of cells that are not resolved by their mesh, or not even converged."""
         return tuple(row for row in self.rows if row["status"] != "resolved")
 
-    def _wanting(self) -> Iterator[str]:
-        """How many cells are not resolved, and why the first is not."""
-        if self.unresolved:
-            first = self.unresolved[0]
-            yield (
-                f"{len(self.unresolved)} of {len(self.rows)} cells are not resolved; the reasons "
-                f"are in sweep.csv. {first['cell']} is {first['status']}: {first['reason']}"
-            )
+    @property
+    def wanting(self) -> str:
+        """How many cells are not resolved, and why the first is not; "" where all are."""
+        if not self.unresolved:
+            return ""
+        first = self.unresolved[0]
+        return (
+            f"{len(self.unresolved)} of {len(self.rows)} cells are not resolved; the reasons "
+            f"are in sweep.csv. {first['cell']} is {first['status']}: {first['reason']}"
+        )
 
     @property
     def probability(self) -> tuple[Row, ...]:
@@ -109,11 +111,10 @@ class SweepOutcome:
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """Sentences that must be read: covers that are not resolved or do not count, failures."""
+        """Sentences that must be read: covers that do not count, cells that failed."""
         return (
             *(sentence for part in self.irregular.values() for sentence in part.notices),
             *(f"failed: {cell.name} ({cell.label}): {error}" for cell, error in self.failed),
-            *self._wanting(),
         )
 
 
