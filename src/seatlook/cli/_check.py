@@ -10,8 +10,11 @@ from seatlook.cli._output import Json, note, say, table
 from seatlook.errors import InputError, RenderError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from seatlook.assembly.ease import SeamEase
     from seatlook.assembly.start_lines import StartLine
+    from seatlook.model import Cover
     from seatlook.results.resolution import Waves
     from seatlook.seat import Seat
 
@@ -44,8 +47,6 @@ def check(
     cover, pattern = seat.check(), seat.scene.pattern
     read = _pattern_lines(scene, changes)
     waves = expected_waves(cover)
-    finest = min(waves, key=lambda wave: wave.wavelength)
-    resolved = all(wave.resolved for wave in waves)
     lines = start_lines(seat.scene, cover)
     sewn = {line.name: line for line in lines if line.kind == "seam"}
     eases = [seam_ease(pattern, seam) for seam in pattern.seams]
@@ -56,15 +57,7 @@ def check(
         ("what", "value"),
         [
             ("scene", seat.scene.name),
-            ("panels", len(cover.panel_names)),
-            ("seams", len(cover.stitchings)),
-            ("hooks_and_frames", len(cover.anchors)),
-            ("vertices", len(cover.rest)),
-            ("triangles", len(cover.faces)),
-            ("element_size_mm", 1e3 * cover.element_size),
-            ("wavelength_mm", 1e3 * finest.wavelength),
-            ("wavelength_over_element_size", finest.wavelength / cover.element_size),
-            ("expected_status", "resolved" if resolved else "converged, not resolved"),
+            *_mesh_figures(cover, waves),
             ("drawing", None if drawing is None else str(drawing)),
             *([("ease", seams), ("held", held), ("pattern", read)] if json else ()),
             *([("waves", list(map(_wave_row, waves)))] if json else ()),
@@ -76,6 +69,23 @@ def check(
             table(tuple(rows[0]), [tuple(map(_short, row.values())) for row in rows], json=False)
     note_coarse(seat)
     note(f"nothing wrong; to solve and draw it: seatlook evaluate {scene} --out FOLDER")
+
+
+def _mesh_figures(cover: Cover, waves: Sequence[Waves]) -> list[tuple[str, Any]]:
+    """What there is to solve, and whether its mesh will carry it."""
+    finest = min(waves, key=lambda wave: wave.wavelength)
+    resolved = all(wave.resolved for wave in waves)
+    return [
+        ("panels", len(cover.panel_names)),
+        ("seams", len(cover.stitchings)),
+        ("hooks_and_frames", len(cover.anchors)),
+        ("vertices", len(cover.rest)),
+        ("triangles", len(cover.faces)),
+        ("element_size_mm", 1e3 * cover.element_size),
+        ("wavelength_mm", 1e3 * finest.wavelength),
+        ("wavelength_over_element_size", finest.wavelength / cover.element_size),
+        ("expected_status", "resolved" if resolved else "converged, not resolved"),
+    ]
 
 
 def _pattern_lines(scene: Path, changes: tuple[str, ...]) -> list[str]:
