@@ -32,12 +32,12 @@ class Outcome:
 
 
 def fuzz(name: str, folder: Path, count: int, *, seed: int = 1) -> Outcome:
-    """Read ``count`` damaged files of a format; the whole ones first."""
+    """Read the whole files of a format, then ``count`` damaged ones."""
     form, rng = FORMATS[name], random.Random(f"{name} {seed}")
     seeds = form.seeds(folder)
     path, outcome = folder / form.file, Outcome()
     whole = path.read_bytes() if path.exists() else None
-    for number in range(count):
+    for number in range(len(seeds) + count):
         is_whole = number < len(seeds)
         content = seeds[number] if is_whole else form.damage(rng.choice(seeds), rng)
         path.write_bytes(content)
