@@ -14,25 +14,27 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from seatlook.assembly.seam_guess.kin import Kin, hand
+from seatlook.assembly.seam_guess.notches import match_notches, notches_at_joints
 from seatlook.assembly.seam_guess.outlines import Outlines, Side
 from seatlook.model import FloatArray
 
 LONGEST_EASE = 0.035  # of one edge on one edge
 LONGEST_RUN_EASE = 0.006  # where atoms are merged: many sums come near by chance
 _ATOMS_IN_PAIR = 5
-_REACH, _MISFIT = 0.002, 0.008  # m and share of the length by which notches that meet may miss
 _DART = 2.2  # nat; two edges that meet in a narrow notch of the outline are few
 _HOLLOW = 0.4  # rad
 _JOINT_NOTCH = 1.5  # nat, of a notch where the far side goes from one edge to the next
 _KEPT = 16  # best partners of each side that are looked at further
 _REFLEX = np.radians(240.0)  # inside angle at the tip of a dart
 _SLIT = np.radians(353.5)  # and at that of an open slit
-_NARROW = np.radians(318.0)  # and at that of most
+_NARROW = np.radians(340.0)  # and at that of most
+_WEDGE = np.radians(150.0)  # widest corner of a piece that is set into a cut
+_LONE_DART = 4.0  # nat; in a cover of several panels darts come in mirrored pairs
 _BY_SHAPE = -3.0  # of edges that are equal by the symmetry of their panels
 _PRIOR = -2.0
 _NEAR_LENGTH = 0.25  # log; edges that are as long, for how rare a partner is
 # Spread of the difference of sewn lengths: a part that is exact, of the length, and floor [m].
-_SPREADS = ((0.0, 0.00015), (0.003, 0.0003), (0.015, 0.0005))
+_SPREADS = ((0.0, 0.0001), (0.003, 0.0003), (0.015, 0.0005))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,6 +86,17 @@ class Pair:
     def panels(self) -> frozenset[int]:
         """Numbers of the panels of both sides."""
         return frozenset((self.a.panel, *(side.panel for side in self.b)))
+
+    @property
+    def is_dart(self) -> bool:
+        """Whether one side goes over into the other, at the tip of a dart."""
+        b = self.b[0]
+        return len(self.b) == 1 and (self.a.end == b.first or b.end == self.a.first)
+
+    @property
+    def is_tube(self) -> bool:
+        """Whether a panel is sewn to itself, but for a dart."""
+        return len(self.panels) == 1 and not self.is_dart
 
     @property
     def b_first(self) -> int:
@@ -160,12 +173,16 @@ def _may_close(outlines: Outlines, a: Side, b: Side) -> bool:
 
 
 class Background:
-    """What any two sides of the pattern look like."""
+    """What any two sides of the pattern look like.
+
+    Attributes
+    ----------
+    bend : [rad] half of all pairs of edges differ by more
+    """
 
     def __init__(self, outlines: Outlines) -> None:
         self._log = np.log(outlines.lengths)
         bends = np.array([s.bend[-1] for s in outlines.atoms])
-        # Half of all pairs of edges differ by more than this.
         spread = np.abs(bends[:, None] + bends)[np.triu_indices(len(bends), 1)]
         self.bend = float(max(np.quantile(spread, 0.5) if len(spread) else 0.0, 0.15))
 
@@ -197,7 +214,7 @@ def weigh(
         "names": _name_term(pair, outlines, same=same),
         "merged": _merge_term(pair),
         "panel": _panel_term(pair, outlines, kin, same=same),
-        "joint notches": _JOINT_NOTCH * _notches_at_joints(pair),
+        "joint notches": _JOINT_NOTCH * notches_at_joints(a, b),
     }  # fmt: skip
     return replace(pair, terms=terms, meeting=meeting, missing=missing)
 
@@ -225,17 +242,33 @@ def _panel_term(pair: Pair, outlines: Outlines, kin: Kin, *, same: bool) -> floa
     if pair.a.panel == far.panel:
         if tips := _tips(pair):
             wide = max(float(_NARROW) - float(outlines.angle[list(tips)].min()), 0.0)
-            # What takes out next to nothing is a slit.
+            # What takes out next to nothing is a slit; so is, most often, what has no twin.
             slit = float(outlines.angle[list(tips)].max()) > _SLIT
-            return float(_DART - wide / np.radians(10.0) - 4.0 * slit)
+            alone = len(outlines.panels) > 1 and all(
+                kin.mirror.get(a, a) in pair.atoms for a in pair.atoms
+            )
+            hole = _has_wedge(pair, outlines)
+            return float(_DART - wide / np.radians(8.0) - 4.0 * (slit + hole) - _LONE_DART * alone)
         return -1.0 if same else -3.5
     both = zip(pair.a.atoms, far.atoms[::-1], strict=False)
     return -2.5 if any((min(x), max(x)) in kin.ends for x in both) else 0.0
 
 
+def _has_wedge(pair: Pair, outlines: Outlines) -> bool:
+    """Whether another panel has a corner between two edges as long as a dart's: a gusset for it."""
+    near = np.abs(np.log(outlines.lengths / pair.a.length)) < LONGEST_RUN_EASE
+    behind = {ahead: atom for atom, ahead in enumerate(outlines.ahead)}
+    return any(
+        near[behind[k]] and outlines.angle[k] < _WEDGE and outlines.panel_of[k] != pair.a.panel
+        for k in np.flatnonzero(near).tolist()
+    )
+
+
 def _length_term(pair: Pair, rates: Rates, background: Background, *, same: bool) -> float:
+    if pair.is_tube:
+        return 0.5 * _BY_SHAPE  # opposite sides of a panel are often as long as each other
     if same:
-        return _BY_SHAPE if pair.a.panel != pair.b[0].panel else 0.5 * _BY_SHAPE
+        return _BY_SHAPE
     mean = 0.5 * (pair.a.length + pair.b_length)
     sewn = 0.0
     for weight, (share, floor) in zip(rates.exact, _SPREADS, strict=True):
@@ -251,39 +284,6 @@ def _notch_term(meeting: int, missing: int, rates: Rates, *, same: bool) -> floa
         return rates.bare
     gain = 0.0 if same else rates.meets * min(meeting, 3)
     return gain + max(rates.misses * missing, -4.5)
-
-
-def match_notches(a: Side, b: Sequence[Side]) -> tuple[int, int]:
-    """Count notches that meet one on the other side or a joint of it, and those that do not."""
-    near = a.notches / a.length
-    far, joints = _far_places(b)
-    reach = _REACH / a.length + _MISFIT
-    free = far.tolist()
-    meeting = missing = 0
-    for at in near:
-        gaps = [abs(at - x) for x in free]
-        if gaps and min(gaps) < reach:
-            meeting += 1
-            free.pop(int(np.argmin(gaps)))
-        elif (np.abs(joints - at) < reach).any():
-            meeting += 1
-        else:
-            missing += 1
-    return meeting, missing + len(free)
-
-
-def _far_places(b: Sequence[Side]) -> tuple[FloatArray, FloatArray]:
-    """Shares of the far side's length, as it meets the near one, of its notches and joints."""
-    total = sum(side.length for side in b)
-    starts = np.cumsum([0.0, *(side.length for side in b)])
-    notches = np.concatenate([s + side.notches for s, side in zip(starts, b, strict=False)])
-    return 1.0 - np.sort(notches)[::-1] / total, 1.0 - starts[1:-1] / total
-
-
-def _notches_at_joints(pair: Pair) -> int:
-    _, joints = _far_places(pair.b)
-    gaps = np.abs(pair.a.notches[:, None] / pair.a.length - joints)
-    return int((gaps < _REACH / pair.a.length + _MISFIT).sum())
 
 
 def _bend_term(pair: Pair, background: Background, *, same: bool) -> float:

@@ -6,12 +6,16 @@ from dataclasses import dataclass
 
 from seatlook.assembly.seam_guess.chains import sew_chains
 from seatlook.assembly.seam_guess.evidence import Pair, Rates, find_pairs, learn
+from seatlook.assembly.seam_guess.gathers import maybe_gathered
 from seatlook.assembly.seam_guess.kin import Kin
 from seatlook.assembly.seam_guess.outlines import Outlines
 from seatlook.assembly.seam_guess.search import Doubt, Search
 from seatlook.assembly.seam_guess.sewing import Sewing
 
 _NEAR = 6.0  # nat; rivals that lose more are not worth a word
+_APART = 2.0  # nat off all seams but darts if panels stay apart: some seams do not fit in length
+_GATHERED = 0.5  # probability at most, of one whose sides may be gathered to a third panel
+_ROUNDS = 4  # in which seams and their neighbours agree on how sure they are
 _TIE = 0.5  # nat; alike by symmetry and as likely
 
 
@@ -43,27 +47,52 @@ def judge(outlines: Outlines, kin: Kin) -> list[Verdict]:
     for last in (False, True):
         pairs = find_pairs(outlines, kin, rates)
         sewing = Sewing(outlines, pairs, _mirrored(pairs, kin))
-        Search(sewing).run(thorough=last)
+        Search(sewing, [_kind(p, kin) for p in pairs]).run(thorough=last)
         used = rates
         chosen = [pairs[n] for n in sorted(sewing.sewn)]
         rest = [p for n, p in enumerate(pairs) if n not in sewing.sewn]
         rates = learn(chosen, rest, notched=notched)
     leads = sew_chains(sewing, outlines, kin, used)
-    doubts = Search(sewing).doubts()
+    doubts = Search(sewing, [_kind(p, kin) for p in sewing.pairs]).doubts()
     for number, lead in leads.items():
         doubts[number].left_out = min(doubts[number].left_out, lead)
-    return [_verdict(sewing, number, doubt, kin) for number, doubt in doubts.items()]
+    sure = _probabilities(sewing, doubts, maybe_gathered(sewing, outlines))
+    return [_verdict(sewing, number, doubt, sure[number]) for number, doubt in doubts.items()]
 
 
-def _verdict(sewing: Sewing, number: int, doubt: Doubt, kin: Kin) -> Verdict:
-    pairs, own = sewing.pairs, _kind(sewing.pairs[number], kin)
-    alike = {r for r in doubt.rivals if _kind(pairs[r], kin) == own}
+def _probabilities(
+    sewing: Sewing, doubts: dict[int, Doubt], gathered: set[int]
+) -> dict[int, float]:
+    """Probabilities of the seams; what neighbours say counts as far as they are sure themselves."""
+    apart = _APART if len(set(sewing.pieces)) > 1 else 0.0
+    support = {number: sewing.support(number) for number in doubts}
+    sure = dict.fromkeys(doubts, 1.0)
+    for _ in range(_ROUNDS):
+        slack = {
+            number: sum(
+                worth * (1.0 - min((sure[n] for n in others), default=1.0))
+                for worth, others in support[number]
+            )
+            for number in doubts
+        }
+        sure = {
+            number: min(
+                doubt.probability(slack[number] + apart * (not sewing.pairs[number].is_dart)),
+                _GATHERED if number in gathered else 1.0,
+            )
+            for number, doubt in doubts.items()
+        }
+    return sure
+
+
+def _verdict(sewing: Sewing, number: int, doubt: Doubt, probability: float) -> Verdict:
+    pairs, alike = sewing.pairs, doubt.alike
     order = sorted(doubt.rivals, key=lambda r: doubt.rivals[r])
     pair = pairs[number]
     met = [sewing.point(stop)[0] for stop in (pair.a.first, pair.a.end)]
     return Verdict(
         pair=pair,
-        probability=doubt.probability(alike),
+        probability=probability,
         rivals=tuple(pairs[r] for r in order if r not in alike and doubt.rivals[r] < _NEAR)[:4],
         alike=tuple(pairs[r] for r in order if r in alike and doubt.rivals[r] < _TIE)[:4],
         ends=sum(1 for stops in met if len(stops) > 2),

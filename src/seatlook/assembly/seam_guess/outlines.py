@@ -22,6 +22,8 @@ LONGEST_SIDE = 4  # atoms in a row
 BEND_SAMPLES = 16
 WEAK = np.radians(50.0)  # turn of a corner that may lie inside a sewn edge
 _ARM = 0.012  # m on both sides of a corner over which its angle is measured
+_SHORT_ARM = 0.004  # m, and that of a corner among others
+_STANDS_OUT = np.radians(15.0)  # by which it turns more than those
 _LONG_ARM = 0.05  # m, over which a step in the outline is none
 _SHARP, _STRAIGHT = np.radians(30.0), np.radians(22.0)
 _AT_END = 0.002  # m; a notch that near an end of an edge marks the end
@@ -184,7 +186,15 @@ def find_stops(panel: Panel) -> IntArray:
     groups = [group for group in groups if group]
     lasting = [group for group in groups if not _is_jog(panel, arc, group)]
     kept = lasting if len(lasting) > 1 else groups
-    return np.array(sorted(group[len(group) // 2] for group in kept), dtype=np.int64)
+    return np.array(sorted(_middle(panel, arc, group) for group in kept), dtype=np.int64)
+
+
+def _middle(panel: Panel, arc: FloatArray, group: Sequence[int]) -> int:
+    """The corner of a group that stands out, as in a mirrored panel too, or the one amid them."""
+    turns = [abs(turn_at(panel, arc, float(arc[corner]), _SHORT_ARM)) for corner in group]
+    order = np.argsort(turns)
+    alone = len(group) > 1 and turns[order[-1]] - turns[order[-2]] > _STANDS_OUT
+    return group[int(order[-1])] if alone else group[len(group) // 2]
 
 
 def _is_jog(panel: Panel, arc: FloatArray, group: Sequence[int]) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -13,7 +13,8 @@ from seatlook.assembly.seam_guess.evidence import Pair
 from seatlook.assembly.seam_guess.guess import Verdict, judge
 from seatlook.assembly.seam_guess.kin import find_kin
 from seatlook.assembly.seam_guess.outlines import Outlines, Side
-from seatlook.model import Edge, Panel, Pattern, Seam
+from seatlook.mesh.places import place_words
+from seatlook.model import Edge, FloatArray, Panel, Pattern, Seam
 
 SURE = 0.9  # probability from which a seam is written; below it is listed as not sure
 _PLACES = ("right", "top-right", "top", "top-left", "left", "bottom-left", "bottom", "bottom-right")
@@ -83,7 +84,8 @@ def propose_seams(panels: Sequence[Panel]) -> Proposal:
     sure = [v for v in verdicts if v.probability >= SURE]
     names = _Names(outlines, [v.pair for v in sure])
     seams, reasons, rivals, probabilities = [], {}, {}, {}
-    labels = _seam_names(names, sure)
+    unsewn = Pattern(panels=tuple(panels), edges=names.edges, seams=())
+    labels = _seam_names(names, unsewn, sure)
     for verdict, name in zip(sure, labels, strict=True):
         a, b = names.ends(verdict.pair)
         seams.append(Seam(name=name, a=a, b=b))
@@ -95,7 +97,7 @@ def propose_seams(panels: Sequence[Panel]) -> Proposal:
     doubtful.sort(key=lambda v: -v.probability)
     sewn = {name for seam in seams for name in (seam.a, *seam.b)}
     return Proposal(
-        pattern=Pattern(panels=tuple(panels), edges=names.edges, seams=tuple(seams)),
+        pattern=replace(unsewn, seams=tuple(seams)),
         reasons=MappingProxyType(reasons),
         rivals=MappingProxyType(rivals),
         free=tuple(name for name in names.edges if name not in sewn),
@@ -162,17 +164,32 @@ def _place(outlines: Outlines, side: Side) -> str:
     return _PLACES[round(outward / (np.pi / 4)) % 8]
 
 
-def _seam_names(names: _Names, verdicts: Sequence[Verdict]) -> list[str]:
-    """Name seams by their panels, and by the place on the first where two share several."""
-    pairs = [names.ends(v.pair) for v in verdicts]
-    panels = [
-        "-".join(dict.fromkeys(names.edges[name].panel for name in (a, *b))) for a, b in pairs
-    ]
-    often = Counter(panels)
+def _seam_names(names: _Names, pattern: Pattern, verdicts: Sequence[Verdict]) -> list[str]:
+    """Name seams by their panels, and by their place on the first where several have the same."""
+    sides = [names.ends(verdict.pair) for verdict in verdicts]
+    panels = [tuple(dict.fromkeys(names.edges[name].panel for name in (a, *b))) for a, b in sides]
+    labels = ["-".join(own) for own in panels]
+    order = [panel.name for panel in pattern.panels]
+    for group in {frozenset(own) for own in panels}:
+        rows = [k for k, own in enumerate(panels) if frozenset(own) == group]
+        first = min(group, key=order.index)
+        lines = []
+        for k in rows:
+            a, b = sides[k]
+            lines.append(_drawn(pattern, next(e for e in (a, *b) if names.edges[e].panel == first)))
+        for k, word in zip(rows, place_words(lines), strict=True):
+            labels[k] = ".".join(filter(None, (labels[k], word)))
+    repeated = Counter(labels)
     return [
-        f"{label}.{a.rpartition('.')[2]}" if often[label] > 1 else label
-        for label, (a, _) in zip(panels, pairs, strict=True)
+        label if repeated[label] == 1 else f"{label}.{a}"
+        for label, (a, _) in zip(labels, sides, strict=True)
     ]
+
+
+def _drawn(pattern: Pattern, edge: str) -> FloatArray:
+    """Points (k, 3) of an edge for which the words of places are those of its panel's drawing."""
+    x, y = pattern.edge_points(edge).T
+    return np.column_stack([-x, np.zeros_like(x), y])
 
 
 def reason(verdict: Verdict) -> str:

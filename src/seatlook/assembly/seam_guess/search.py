@@ -8,7 +8,8 @@ all states tried in which it is another way, each weighted by its likelihood.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -32,23 +33,34 @@ class Doubt:
     ----------
     left_out : [nat] loss of leaving the seam away
     rivals : other pair -> loss of taking it instead
+    alike : rivals that only symmetry tells from it
     """
 
     left_out: float = np.inf
     rivals: dict[int, float] = field(default_factory=dict)
+    alike: set[int] = field(default_factory=set)
 
-    def probability(self, alike: Iterable[int] = ()) -> float:
-        """Probability of the seam; rivals that are alike by symmetry are not against it."""
-        losses = [self.left_out, *(v for k, v in self.rivals.items() if k not in set(alike))]
-        odds = sum(np.exp(-max(x, -30.0) / TEMPERATURE) for x in losses)
+    def probability(self, slack: float = 0.0) -> float:
+        """Probability of the seam; rivals that are alike by symmetry are not against it.
+
+        ``slack`` [nat] is taken off every loss.
+        """
+        losses = [self.left_out, *(v for k, v in self.rivals.items() if k not in self.alike)]
+        odds = sum(np.exp(-max(x - slack, -30.0) / TEMPERATURE) for x in losses)
         return float(1.0 / (1.0 + WINNERS_CURSE * odds))
 
 
 class Search:
-    """Sews a ``Sewing`` and judges its seams."""
+    """Sews a ``Sewing`` and judges its seams.
 
-    def __init__(self, sewing: Sewing) -> None:
+    Parameters
+    ----------
+    kinds : per pair, what symmetry leaves of it
+    """
+
+    def __init__(self, sewing: Sewing, kinds: Sequence[Hashable]) -> None:
         self._sewing = sewing
+        self._kinds = kinds
         self._with: dict[int, list[int]] = {}
         for number, atoms in enumerate(sewing.atoms):
             for atom in atoms:
@@ -107,16 +119,21 @@ class Search:
         self, doubts: dict[int, Doubt], home: frozenset[int], best: float, rival: int | None
     ) -> None:
         """Put a state down against the seams it lacks."""
-        sewing = self._sewing
+        sewing, kinds = self._sewing, self._kinds
         loss = best - sewing.score
-        for number in home - sewing.sewn:
+        lost, gained = home - sewing.sewn, sewing.sewn - home
+        # Seams of the same kinds make the same cover, with some panels in each other's place.
+        same = Counter(kinds[n] for n in lost) == Counter(kinds[n] for n in gained)
+        for number in lost:
             doubt = doubts[number]
             own = set(sewing.atoms[number])
-            against = [r for r in sewing.sewn - home if own & set(sewing.atoms[r])]
-            if not against:
+            against = [r for r in gained if own & set(sewing.atoms[r])]
+            if not against and not same:
                 doubt.left_out = min(doubt.left_out, loss)
             for other in against:
                 doubt.rivals[other] = min(doubt.rivals.get(other, np.inf), loss)
+                if same or kinds[other] == kinds[number]:
+                    doubt.alike.add(other)
 
     def _greedy(self, numbers: Iterable[int] | None = None) -> None:
         """Sew the surest pair again and again, of all or of some."""

@@ -18,6 +18,10 @@ from seatlook.assembly.seam_guess.outlines import Outlines
 _MIRRORED = 1.0  # nat, of a seam whose mirror image is sewn too
 _CLOSED = -8.0  # of panels without any border left
 _LONE = -1.0  # and of one whose mirror image cannot be
+_CLOSES = 3.5  # of a strip whose ends meet already and are sewn to each other
+_SADDLE = 480.0  # deg
+_ALL_ROUND = np.radians(75.0)  # of the angles round that point, from a full turn
+_LOOSE = -2.0  # of a panel that is sewn to nothing
 
 
 def inner_point(angle: float, count: int) -> float:
@@ -30,14 +34,16 @@ def inner_point(angle: float, count: int) -> float:
         0.60 * _normal(degrees, 360.0, 14.0)
         + 0.25 * _normal(degrees, 320.0, 45.0)
         + 0.04 * _normal(degrees, 180.0, 25.0)
-        + 0.05 / 720.0
+        + _floor(degrees)
     )
     chance = _normal(degrees, 330.0, 130.0) + 0.02 / 720.0
     # That three and more seams agree is rare by chance.
     crowd = -0.8 * max(count - 4, 0) + (0.8 if count > 2 else 0.0)
     # A single corner folded onto itself is a dart if it is one already in the flat.
     alone = -4.0 if count == 1 and degrees < 200.0 else 0.0
-    return float(np.log(sewn / chance)) + crowd + alone
+    # Two corners on each other make a pocket: a pillow's, but more often a hem sewn shut.
+    pocket = -1.5 if count == 2 and degrees < 250.0 else 0.0
+    return float(np.log(sewn / chance)) + crowd + alone + pocket
 
 
 def border_point(angle: float, count: int) -> float:
@@ -47,7 +53,12 @@ def border_point(angle: float, count: int) -> float:
     degrees = np.degrees(angle)
     sewn = 0.6 * _normal(degrees, 180.0, 15.0) + 0.4 * _normal(degrees, 180.0, 60.0)
     chance = _normal(degrees, 220.0, 90.0) + 0.02 / 720.0
-    return float(np.clip(np.log((sewn + 1e-5) / chance), -2.5, 0.4))
+    return float(np.clip(np.log((sewn + _floor(degrees)) / chance), -8.0, 0.4))
+
+
+def _floor(degrees: float) -> float:
+    """Density of angles that are hardly ever sewn; more than a saddle has is none at all."""
+    return 1e-8 if degrees > _SADDLE else 2e-6
 
 
 def _normal(x: float, mean: float, sigma: float) -> float:
@@ -73,9 +84,11 @@ class Sewing:
         self.atoms = [pair.atoms for pair in self.pairs]
         self._scores = [pair.score for pair in self.pairs]
         self._panels = [pair.panels for pair in self.pairs]
+        self._tubes = [pair.is_tube for pair in self.pairs]
         self._stops = [(p.a.first, p.a.end, p.b_first, p.b_end) for p in self.pairs]
         self._panel_of = outlines.panel_of
         self._left = [len(stops) for stops in outlines.stops]  # free atoms of each panel
+        self._joined = [0] * len(outlines.stops)  # seams of each panel with others
         self._involved = _involved(self.pairs, self.mirrored)
         self.next = [-1] * len(angle)
         self._previous = [-1] * len(angle)
@@ -92,6 +105,7 @@ class Sewing:
         self.atoms.append(pair.atoms)
         self._scores.append(pair.score)
         self._panels.append(pair.panels)
+        self._tubes.append(pair.is_tube)
         self._stops.append((pair.a.first, pair.a.end, pair.b_first, pair.b_end))
         self._involved.append(set())
         return len(self.pairs) - 1
@@ -107,6 +121,22 @@ class Sewing:
         self.score -= self._at(stops)
         self._unfinished = value
         self.score += self._at(stops)
+
+    @property
+    def pieces(self) -> list[int]:
+        """Per panel, the number of the piece it belongs to, sewn as far as it is."""
+        above = list(range(len(self._left)))
+
+        def top(panel: int) -> int:
+            while above[panel] != panel:
+                panel = above[panel]
+            return panel
+
+        for number in self.sewn:
+            first, *others = self._panels[number]
+            for other in others:
+                above[top(other)] = top(first)
+        return [top(panel) for panel in range(len(above))]
 
     def free(self, number: int) -> bool:
         """Whether none of a pair's atoms is sewn."""
@@ -132,6 +162,15 @@ class Sewing:
             behind = self._previous[behind]
         return tuple(around), False
 
+    def support(self, number: int) -> list[tuple[float, set[int]]]:
+        """What speaks for a sewn pair at its two ends [nat], and the other seams that say so."""
+        found = []
+        for stop in {self._stops[number][0], self._stops[number][1]}:
+            stops, _ = self.point(stop)
+            others = {self.owner[s] for s in stops if self.owner[s] >= 0} - {number}
+            found.append((max(self._at([stop]), 0.0), others))
+        return found
+
     def gain(self, number: int) -> float:
         """Change of the score if a pair of free atoms is sewn."""
         before = self._around(number)
@@ -154,7 +193,12 @@ class Sewing:
 
     def _around(self, number: int) -> float:
         """What depends on a pair beside its own evidence."""
-        return self._at(self._stops[number]) + self._symmetry(number) + self._closed(number)
+        return (
+            self._at(self._stops[number])
+            + self._symmetry(number)
+            + self._closed(number)
+            + self._loose(number)
+        )
 
     def _link(self, number: int) -> None:
         a0, a1, b0, b1 = self._stops[number]
@@ -163,6 +207,7 @@ class Sewing:
         for atom in self.atoms[number]:
             self.owner[atom] = number
             self._left[self._panel_of[atom]] -= 1
+        self._count(number, 1)
         self.sewn.add(number)
 
     def _unlink(self, number: int) -> None:
@@ -172,7 +217,15 @@ class Sewing:
         for atom in self.atoms[number]:
             self.owner[atom] = -1
             self._left[self._panel_of[atom]] += 1
+        self._count(number, -1)
         self.sewn.remove(number)
+
+    def _count(self, number: int, step: int) -> None:
+        """Count a seam between panels at each of them."""
+        panels = self._panels[number]
+        if len(panels) > 1:
+            for panel in panels:
+                self._joined[panel] += step
 
     def _at(self, stops: Iterable[int]) -> float:
         """Sum over the points at some stops."""
@@ -184,7 +237,21 @@ class Sewing:
                 done.update(point)
                 if inside or len(point) > 1:
                     total += self._worth(point, inside=inside)
+                if inside and self._closes(point):
+                    total += _CLOSES
         return total
+
+    def _closes(self, stops: tuple[int, ...]) -> bool:
+        """Whether a strip is sewn to itself at a point at which its ends met without that."""
+        if len(stops) < 3 or not any(self._tubes[self.owner[s]] for s in stops):
+            return False
+        return bool(abs(sum(self._angle[s] for s in stops) - 2 * np.pi) < _ALL_ROUND)
+
+    def _loose(self, number: int) -> float:
+        """Panels of a pair that no seam joins to another panel."""
+        if len(self._joined) < 3:
+            return 0.0  # of two panels any seam would do
+        return _LOOSE * sum(1 for panel in self._panels[number] if not self._joined[panel])
 
     def _worth(self, stops: tuple[int, ...], *, inside: bool) -> float:
         key = (inside, *sorted(stops))
