@@ -73,7 +73,7 @@ def test_the_scene_is_complete_and_its_comments_stay(started):
     scene = io.load_scene(started / "scene.toml", changes=["mesh.element_size_mm=20"])
     cover = assemble(scene)
     assert len(scene.pattern.seams) == 14
-    assert len(scene.frames) == 4
+    assert [frame.name for frame in scene.frames] == ["border"]
     assert len(cover.panel_names) == 7
     text = (started / "scene.toml").read_text()
     assert "The seams are guessed: read them over." in text
@@ -108,19 +108,27 @@ def test_panels_start_clear_of_the_foam_and_joined_at_their_seams(started):
     assert sorted(gaps)[5] < 0.02  # the six that carry a panel, each a slightly curved line
 
 
-def test_free_edges_are_pulled_to_curves_of_their_length(started):
+def test_free_edges_are_pulled_to_one_closed_curve_of_their_length(started):
     scene = io.load_scene(started / "scene.toml")
-    for frame in scene.frames:
-        curve = scene.foam.curves[frame.curve]
-        length = np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()
-        assert length == pytest.approx(scene.pattern.edge_length(frame.edges[0]), rel=0.06)
+    (frame,) = scene.frames
+    panels = [scene.pattern.edges[name].panel for name in frame.edges]
+    assert panels == ["FRONT", "SIDE_L", "REAR", "SIDE_R"]
+    curve = scene.foam.curves[frame.curve]
+    np.testing.assert_allclose(curve[0], curve[-1], atol=1e-9)
+    edges = [scene.pattern.edge_length(name) for name in frame.edges]
+    np.testing.assert_allclose(np.diff(frame.junctions), edges, rtol=0.06)
 
 
-def test_curves_of_neighbours_share_their_ends(started):
-    curves = io.load_scene(started / "scene.toml").foam.curves
-    ends = np.array([curve[k] for curve in curves.values() for k in (0, -1)])
-    away = np.linalg.norm(ends[:, None] - ends, axis=2) + np.diag(np.ones(len(ends)))
-    assert away.min(axis=1).max() < 1e-9
+def test_the_border_lies_where_the_design_has_it(started, demo_scene):
+    own = io.load_scene(demo_scene)
+    scene = io.load_scene(started / "scene.toml")
+    (guessed,), true = scene.frames, own.frames[0]
+    found, meant = scene.foam.curves[guessed.curve], own.foam.curves[true.curve]
+    assert abs(found[:, 2].mean() - meant[:, 2].mean()) < 0.01
+    first = [own.pattern.edges[name].panel for name in true.edges].index("FRONT")
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(meant, axis=0), axis=1))])
+    corner = [np.interp(true.junctions[first], arc, column) for column in meant.T]
+    assert np.linalg.norm(found[0] - corner) < 0.02
 
 
 def test_wires_are_hooked_to_the_seams_above_them(own, demo_scene, capsys):
@@ -266,8 +274,9 @@ def test_the_largest_panel_faces_the_broad_side_of_a_foam_that_stands(demo_scene
     field = distance_field(foam.vertices, foam.faces)
     line = scene.pattern.panel(layout.first).outline @ pose.rotation[:, :2].T + pose.translation
     assert field.at(line)[0].min() > 0.0
-    for curve in layout.curves.values():
-        assert np.isfinite(curve).all()
+    assert layout.borders
+    for border in layout.borders:
+        assert np.isfinite(border.curve).all()
 
 
 @pytest.mark.parametrize(

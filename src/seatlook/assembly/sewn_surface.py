@@ -19,6 +19,7 @@ from seatlook.model import Edge, FloatArray, Panel, Pattern, Seam
 WIDEST_POINT = np.radians(520.0)  # a box has 270 degrees, the inner corner of a step 450
 _ARM = 0.015  # m from a point, over which the angle of an outline is taken
 _SAME = 1e-6  # m of a closed outline's length, between places that are one
+_GAP = 1e-4  # m of a border without a name
 _FIT = 1e-3  # share of its length by which a seam may fit worse with another partner
 
 Place = tuple[str, float]  # panel, arc length along its outline
@@ -63,7 +64,7 @@ def sewn_surface(pattern: Pattern, seams: Iterable[Seam]) -> SewnSurface:
     edges = len(pieces) - len(twins) // 2
     euler = len(set(point.values())) - edges + len(panels)
     parts = len(set(joined.values()))
-    handles = (2 * parts - _rims(pieces, twins) - euler) // 2
+    handles = (2 * parts - len(_rims(pieces, twins)) - euler) // 2
     gathered: dict[Place, list[Place]] = {}
     for place, name in point.items():
         gathered.setdefault(name, []).append(place)
@@ -72,6 +73,22 @@ def sewn_surface(pattern: Pattern, seams: Iterable[Seam]) -> SewnSurface:
         parts,
         tuple((frozenset(ps), sum(map(outlines.angle, ps))) for ps in gathered.values()),
     )
+
+
+def free_borders(pattern: Pattern) -> tuple[tuple[str, ...], ...]:
+    """Closed borders of the sewn panels, each the names of its free edges one after the other.
+
+    A panel without any seam has one of its own. Borders with a stretch that has no name are left
+    out.
+    """
+    outlines = _Outlines(pattern)
+    twins = {x: y for seam in pattern.seams for p in outlines.pairs(seam) for x, y in (p, p[::-1])}
+    rims = _rims(outlines.pieces(twins), twins)
+    sewn = {panel for (panel, _), _ in twins}
+    lone = [panel.name for panel in pattern.panels if panel.name not in sewn]
+    rims += [[((name, 0.0), (name, 0.0))] for name in lone]
+    found = [[outlines.edges_on(piece) for piece in rim] for rim in rims]
+    return tuple(tuple(name for part in rim for name in part) for rim in found if all(rim))
 
 
 def exchanged(pattern: Pattern) -> tuple[list[tuple[Seam, Seam]], list[tuple[Seam, Seam]]]:
@@ -147,6 +164,19 @@ class _Outlines:
             following.update(dict(zip(ring, [*ring[1:], ring[0]], strict=True)))
         return following
 
+    def edges_on(self, piece: Piece) -> list[str]:
+        """Names of the edges that make up a stretch, in its order; none if they leave a gap."""
+        (panel, start), (_, end) = piece
+        whole = float(self._arc[panel][-1])
+        length = (end - start) % whole or whole
+        found = []
+        for edge in self.pattern.edges.values():
+            at = (self._begin(edge) - start + _SAME) % whole
+            if edge.panel == panel and at < length - _SAME:
+                found.append((at, edge.name))
+        total = sum(self.pattern.edge_length(name) for _, name in found)
+        return [name for _, name in sorted(found)] if abs(total - length) < _GAP else []
+
     def angle(self, place: Place) -> float:
         """Inner angle of an outline at a place [rad], over arms long enough to round a corner."""
         name, at = place
@@ -197,21 +227,22 @@ def _points(
 def _rims(
     pieces: dict[Piece, Piece],
     twins: dict[Piece, Piece],
-) -> int:
-    """How many closed lines the free stretches make."""
-    free = {piece for piece in pieces if piece not in twins}
-    count = 0
+) -> list[list[Piece]]:
+    """Closed lines that the free stretches make, each in the order of the outlines."""
+    free = {piece: None for piece in pieces if piece not in twins}
+    rims = []
     while free:
-        count += 1
-        start = piece = free.pop()
+        rim = [next(iter(free))]
         while True:
-            piece = pieces[piece]
+            free.pop(rim[-1])
+            piece = pieces[rim[-1]]
             while piece in twins:
                 piece = pieces[twins[piece]]
-            if piece == start:
+            if piece == rim[0]:
                 break
-            free.discard(piece)
-    return count
+            rim.append(piece)
+        rims.append(rim)
+    return rims
 
 
 def _classes(items: Iterable[T], pairs: Iterable[tuple[T, T]]) -> dict[T, T]:

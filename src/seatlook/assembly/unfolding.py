@@ -1,7 +1,7 @@
-"""A first guess at where flat panels start and which way their free edges are pulled.
+"""A first guess at where flat panels start.
 
-The panels are laid out from the largest one, each turned about the seam that joins it to one laid
-before, and folded down until it would come too near to the foam.
+The panels are laid out from the largest one, each turned about the middle of the seam that joins it
+to one laid before, and folded down until it would come too near to the foam.
 """
 
 from __future__ import annotations
@@ -11,38 +11,43 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
+from seatlook.assembly.girth import lay_borders
+from seatlook.assembly.seam_guess.kin import hand, words
 from seatlook.errors import InputError, did_you_mean
-from seatlook.mesh import arc_length
-from seatlook.model import FloatArray, Foam, Pattern, Pose, Seam
+from seatlook.mesh import arc_length, face_areas
+from seatlook.model import Border, FloatArray, Foam, Pattern, Pose, Seam
 from seatlook.solver.foam.distance import DistanceField, distance_field
 
 LIFT = 0.020  # m above the foam's top, of the panel laid first
 CLEAR = 0.012  # m from the foam, of the panels folded down
-_CLOSED = 1e-6  # m; ends of an edge nearer than that are one
 _APART = 0.05  # m between panels laid beside the foam
 _AS_FLAT = 1.05  # a foam this high over its smaller width lies; higher, it stands
+_FOR_SIDES = 0.4  # share of the largest panel's area that one of the middle needs to be laid first
+_AS_LARGE = 0.97  # share of the largest panel's area
+_BEHIND = {"rear", "back", "bottom", "under", "lower", "hinten", "unten"}
+_LEANS = np.radians(8.0)  # from which a foam leans; less is its shape
+_SLENDER = 1.5  # spread across it over which its direction is clear
+_LIES = 0.7  # cosine of the steepest panel that lies
 _STEEPEST = 85.0  # deg, of a fold
 _STEP = 5.0  # deg
-_NEAR = 0.03  # m; the foam's height is looked for within it
-_MEET = 0.08  # m; ends of free edges that near each other are sewn together
-_SAMPLES = 25  # points of a free edge and of its curve
+_SAMPLES = 31  # points of a seam; its middle fifth is the hinge
+_WIDEST_GAP = 0.06  # m, by which a panel is moved off one that bulges towards it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Layout:
-    """Poses of all panels, the one laid first, and curves for the free edges.
+    """Poses of all panels, the one laid first, and curves for the free borders.
 
     Parameters
     ----------
-    curves : name of a free edge -> (k, 3) [m] round the foam, where the edge comes to lie
+    borders : of the panels that seams join to the first, with curves round the foam
     apart : panels that no seam joins to the others
     """
 
     first: str
     poses: MappingProxyType[str, Pose]
-    curves: MappingProxyType[str, FloatArray]
+    borders: tuple[Border, ...]
     apart: tuple[str, ...] = ()
 
 
@@ -52,7 +57,6 @@ def lay_out(
     *,
     first: str | None = None,
     turn_deg: float = 0.0,
-    free: Sequence[str] = (),
     partial: bool = False,
 ) -> Layout:
     """Place panels over the foam, joined at their seams and folded down around it.
@@ -64,8 +68,7 @@ def lay_out(
     first : panel on the broad side, by default the largest
     turn_deg : how far it is turned, counter-clockwise seen from outside; at 0 its v axis points
         back on a cushion, up on what stands
-    free : names of edges that are sewn to nothing, for which curves are made
-    partial : lay panels that no seam joins beside the foam, and leave out curves that find no place
+    partial : lay panels that no seam joins beside the foam
 
     Raises
     ------
@@ -81,10 +84,16 @@ def lay_out(
             hint=did_you_mean(first, names),
         )
     # Laid out with the broad side up, then turned back with it.
-    turn = _broad_side_up(foam.vertices)
+    own = _upright(foam)
+    turn = _broad_side_up(foam.vertices @ own.T) @ own
     body = replace(foam, vertices=np.ascontiguousarray(foam.vertices @ turn.T))
-    top = first or max(names, key=lambda n: outline_area(pattern.panel(n).outline))
-    poses, fall = _joined_panels(pattern, body, top, turn_deg)
+    top = first or _largest(pattern)
+    middle = _middle_of(body)
+    poses, _ = _joined_panels(pattern, body, top, turn_deg, middle)
+    # What faces up is laid over the middle of the foam, not the first panel alone.
+    poses, depth = _joined_panels(
+        pattern, body, top, turn_deg, 2 * middle - _facing_up(pattern, poses)
+    )
     unsewn = tuple(name for name in names if name not in poses)
     if unsewn and not partial:
         raise InputError.single(
@@ -93,15 +102,40 @@ def lay_out(
             expected="every panel sewn to another",
             hint="complete the seams file, then: seatlook init ... --seams FILE",
         )
-    hanging = [name for name in free if pattern.edges[name].panel in poses]
-    curves = _curves(pattern, body, poses, fall, hanging, partial=partial)
     poses |= _beside(pattern, body, unsewn)
+    turned = {name: _turned(poses[name], turn.T) for name in names}
     return Layout(
         first=top,
-        poses=MappingProxyType({name: _turned(poses[name], turn.T) for name in names}),
-        curves=MappingProxyType({name: line @ turn for name, line in curves.items()}),
+        poses=MappingProxyType(turned),
+        borders=lay_borders(pattern, foam, own, turned, depth),
         apart=unsewn,
     )
+
+
+def _largest(pattern: Pattern) -> str:
+    """Largest panel of the middle; of nearly equal ones the one not put behind by its name."""
+    area = {panel.name: panel.area for panel in pattern.panels}
+    amid = [
+        name for name in area if not hand(name) and area[name] > _FOR_SIDES * max(area.values())
+    ]
+    largest = max(area[name] for name in amid or area)
+    large = [name for name in amid or area if area[name] > _AS_LARGE * largest]
+    return min(large, key=lambda name: (bool(set(words(name)) & _BEHIND), -area[name]))
+
+
+def _upright(foam: Foam) -> FloatArray:
+    """Rotation (3, 3) about x that stands a foam upright which leans, as backrests do."""
+    areas = face_areas(foam.vertices, foam.faces)
+    centres = foam.vertices[foam.faces].mean(axis=1)[:, 1:]
+    away = centres - areas @ centres / areas.sum()
+    spread, axes = np.linalg.eigh((areas[:, None] * away).T @ away)
+    thin = axes[:, 0]  # across the foam, in y and z
+    lean = float(np.arctan2(thin[1], thin[0]))
+    lean -= np.pi / 2 * round(lean / (np.pi / 2))
+    if spread[1] < _SLENDER * spread[0] or abs(lean) < _LEANS:
+        return np.eye(3)
+    c, s = np.cos(lean), np.sin(lean)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]])
 
 
 def _broad_side_up(vertices: FloatArray) -> FloatArray:
@@ -119,18 +153,17 @@ def _turned(pose: Pose, turn: FloatArray) -> Pose:
 
 
 def _joined_panels(
-    pattern: Pattern, foam: Foam, top: str, turn_deg: float
-) -> tuple[dict[str, Pose], dict[str, float]]:
-    """Poses of the panels that seams join to the first, and the height at which each hangs."""
+    pattern: Pattern, foam: Foam, top: str, turn_deg: float, middle: FloatArray
+) -> tuple[dict[str, Pose], dict[str, int]]:
+    """Poses of the panels that seams join to the first, and how many seams away each is."""
     field = distance_field(foam.vertices, foam.faces)
-    poses = {top: _on_top(pattern.panel(top).outline, foam, turn_deg)}
-    depth, fall = {top: 0}, {top: foam.vertices[:, 2].max()}
+    poses = {top: _on_top(pattern.panel(top).outline, foam, turn_deg, middle)}
+    depth = {top: 0}
     while hinges := [h for seam in pattern.seams for h in _hinges(pattern, seam, poses)]:
         hinge = min(hinges, key=lambda h: (depth[h.placed], -np.ptp(h.stretch, axis=0).max()))
         poses[hinge.hung] = _folded(pattern, hinge, poses[hinge.placed], field)
         depth[hinge.hung] = depth[hinge.placed] + 1
-        fall[hinge.hung] = _height(foam, _seam_middle(hinge, poses[hinge.placed]))
-    return poses, fall
+    return poses, depth
 
 
 def _beside(pattern: Pattern, foam: Foam, names: Sequence[str]) -> dict[str, Pose]:
@@ -149,22 +182,42 @@ def _beside(pattern: Pattern, foam: Foam, names: Sequence[str]) -> dict[str, Pos
     return poses
 
 
-def _on_top(outline: FloatArray, foam: Foam, turn_deg: float) -> Pose:
-    """Lay a panel flat over the middle of the foam."""
+def _on_top(outline: FloatArray, foam: Foam, turn_deg: float, middle: FloatArray) -> Pose:
+    """Lay a panel flat above the foam, its own middle over a place (2,)."""
     angle = np.radians(turn_deg)
     c, s = np.cos(angle), np.sin(angle)
     rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    low, high = foam.vertices.min(axis=0), foam.vertices.max(axis=0)
-    middle = np.array([*((outline.min(axis=0) + outline.max(axis=0)) / 2), 0.0])
-    over = np.array([*((low + high) / 2)[:2], high[2] + LIFT])
-    return Pose(rotation=rotation, translation=over - rotation @ middle)
+    own = np.array([*((outline.min(axis=0) + outline.max(axis=0)) / 2), 0.0])
+    over = np.array([*middle, foam.vertices[:, 2].max() + LIFT])
+    return Pose(rotation=rotation, translation=over - rotation @ own)
+
+
+def _middle_of(foam: Foam) -> FloatArray:
+    """Middle (2,) [m] of a foam seen from above."""
+    return np.asarray((foam.vertices.min(axis=0) + foam.vertices.max(axis=0))[:2] / 2)
+
+
+def _facing_up(pattern: Pattern, poses: Mapping[str, Pose]) -> FloatArray:
+    """Middle (2,) [m] of the panels that lie, not hang, seen from above."""
+    points = np.concatenate(
+        [
+            pattern.panel(name).outline @ pose.rotation[:2, :2].T + pose.translation[:2]
+            for name, pose in poses.items()
+            if pose.rotation[2, 2] > _LIES
+        ]
+    )
+    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
 
 
 @dataclass(frozen=True, slots=True)
 class _Hinge:
-    """A placed panel, one to hang on it, and the two ends (2, 2) [m] of each one's stretch.
+    """A placed panel, one to hang on it, and the seam between them on each.
 
-    Both stretches run along the placed panel's outline, so the hung one's is turned round.
+    Parameters
+    ----------
+    stretch, edge : (_SAMPLES, 2) [m]
+        Points that meet. Both run along the placed panel's outline, so the hung one's is turned
+        round.
     """
 
     placed: str
@@ -175,20 +228,26 @@ class _Hinge:
 
 def _hinges(pattern: Pattern, seam: Seam, poses: Mapping[str, Pose]) -> Iterator[_Hinge]:
     """Ways to hang a panel that is not placed on one that is, along one seam."""
-    line = pattern.edge_points(seam.a)
-    arc = arc_length(line) / arc_length(line)[-1]
+    near = pattern.edges[seam.a].panel
     length = np.array([pattern.edge_length(b) for b in seam.b])
     share = np.concatenate([[0.0], np.cumsum(length)]) / length.sum()
-    place = np.column_stack([np.interp(share, arc, line[:, k]) for k in range(2)])
-    near = pattern.edges[seam.a].panel
-    for number, name in enumerate(seam.b):
-        far, ends = pattern.edges[name].panel, pattern.edge_points(name)[[-1, 0]]
-        ends = ends if seam.reverse else ends[::-1]
-        stretch = place[number : number + 2]
-        if near in poses and far not in poses:
-            yield _Hinge(near, far, stretch, ends)
-        elif far in poses and near not in poses:
-            yield _Hinge(far, near, ends[::-1], stretch[::-1])
+    for name, low, high in zip(seam.b, share, share[1:], strict=False):
+        far = pattern.edges[name].panel
+        if (near in poses) == (far in poses):
+            continue
+        stretch = _points(pattern.edge_points(seam.a), low, high)
+        edge = _points(pattern.edge_points(name), *((1.0, 0.0) if seam.reverse else (0.0, 1.0)))
+        if near in poses:
+            yield _Hinge(near, far, stretch, edge)
+        else:
+            yield _Hinge(far, near, edge[::-1], stretch[::-1])
+
+
+def _points(line: FloatArray, low: float, high: float) -> FloatArray:
+    """Points (_SAMPLES, 2) of a line between two shares of its length."""
+    arc = arc_length(line)
+    at = np.linspace(low, high, _SAMPLES) * arc[-1]
+    return np.column_stack([np.interp(at, arc, line[:, k]) for k in range(2)])
 
 
 def _folded(pattern: Pattern, hinge: _Hinge, placed: Pose, field: DistanceField) -> Pose:
@@ -211,19 +270,42 @@ def _folded(pattern: Pattern, hinge: _Hinge, placed: Pose, field: DistanceField)
 
 
 def _hung(hinge: _Hinge, placed: Pose, angle_deg: float) -> Pose:
-    """Pose of a panel whose edge lies on its stretch, folded down by an angle."""
-    world = hinge.stretch @ placed.rotation[:, :2].T + placed.translation
+    """Pose of a panel whose edge lies on its stretch, folded down by an angle.
+
+    Of a curved seam the middle fifth counts: its ends may lie as near to each other as those of a
+    horseshoe, or on each other.
+    """
+    (p0, p1), (e0, e1) = _middle(hinge.stretch), _middle(hinge.edge)
+    world = np.array([p0, p1]) @ placed.rotation[:, :2].T + placed.translation
     along = (world[1] - world[0]) / np.linalg.norm(world[1] - world[0])
     up = placed.rotation[:, 2]
     outward = np.cross(along, up)
     c, s = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
     across, normal = c * outward - s * up, c * up + s * outward
-    u, v = (hinge.edge[0] - hinge.edge[1]) / np.linalg.norm(hinge.edge[0] - hinge.edge[1])
+    u, v = (e0 - e1) / np.linalg.norm(e0 - e1)
     # The hung panel's edge runs against the placed one's, with its inside on the left.
     own = np.array([[u, v, 0.0], [-v, u, 0.0], [0.0, 0.0, 1.0]])
     rotation = np.column_stack([-along, across, normal]) @ own
-    middle = np.array([*hinge.edge.mean(axis=0), 0.0])
-    return Pose(rotation=rotation, translation=world.mean(axis=0) - rotation @ middle)
+    middle = np.array([*((e0 + e1) / 2), 0.0])
+    place = world.mean(axis=0) + _gap(hinge) * across
+    return Pose(rotation=rotation, translation=place - rotation @ middle)
+
+
+def _middle(line: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ends of the middle fifth of a line (_SAMPLES, 2)."""
+    first = 2 * _SAMPLES // 5
+    return line[first], line[-1 - first]
+
+
+def _gap(hinge: _Hinge) -> float:
+    """How far [m] a panel is to be moved off for its edge not to lie over the placed one's."""
+    rise = []
+    for line in (hinge.stretch, hinge.edge):
+        low, high = _middle(line)
+        along = (high - low) / np.linalg.norm(high - low)
+        rise.append((line - (low + high) / 2) @ np.array([along[1], -along[0]]))
+    # Out of the placed panel, and into the hung one, whose edge runs the other way round.
+    return float(np.clip((rise[0] - rise[1]).max(), 0.0, _WIDEST_GAP))
 
 
 def _sheet(outline: FloatArray) -> FloatArray:
@@ -237,138 +319,3 @@ def _sheet(outline: FloatArray) -> FloatArray:
 def _clearance(pose: Pose, sheet: FloatArray, field: DistanceField) -> float:
     """Least distance [m] of a placed panel from the foam."""
     return float(field.at(sheet @ pose.rotation.T + pose.translation)[0].min())
-
-
-def _placed(pattern: Pattern, edge: str, poses: Mapping[str, Pose]) -> FloatArray:
-    """Points (k, 3) [m] of a placed edge, evenly spread."""
-    line = pattern.edge_points(edge)
-    arc = arc_length(line)
-    at = np.linspace(0.0, arc[-1], _SAMPLES)
-    pose = poses[pattern.edges[edge].panel]
-    flat = np.column_stack([np.interp(at, arc, line[:, k]) for k in range(2)])
-    return np.asarray(flat @ pose.rotation[:, :2].T + pose.translation)
-
-
-def _seam_middle(hinge: _Hinge, placed: Pose) -> FloatArray:
-    middle = np.array([*hinge.stretch.mean(axis=0), 0.0])
-    return np.asarray(placed.rotation @ middle + placed.translation)
-
-
-def _height(foam: Foam, point: FloatArray) -> float:
-    """Height [m] of the foam's surface below a point."""
-    away = np.hypot(*(foam.vertices[:, :2] - point[:2]).T)
-    near = foam.vertices[away <= max(_NEAR, float(away.min()))]
-    return float(near[:, 2].max())
-
-
-def _curves(
-    pattern: Pattern,
-    foam: Foam,
-    poses: Mapping[str, Pose],
-    fall: Mapping[str, float],
-    free: Sequence[str],
-    *,
-    partial: bool,
-) -> dict[str, FloatArray]:
-    """For each free edge, the stretch of the foam's girth that it comes to lie on.
-
-    An edge without one is left out if ``partial``.
-    """
-    placed = {name: _placed(pattern, name, poses) for name in free}
-    ends = {(name, k): line[k, :2] for name, line in placed.items() for k in (0, -1)}
-    meet = {
-        end: [other for other, e in ends.items() if np.hypot(*(e - at)) < _MEET]
-        for end, at in ends.items()
-    }
-    curves = {}
-    for name in placed:
-        panel = pattern.edges[name].panel
-        reach = _reach(pattern.edge_points(name), pattern.panel(panel).outline)
-        # Ends of neighbours are sewn together: both go where they meet half way.
-        first, last = (np.mean([ends[e] for e in meet[name, k]], axis=0) for k in (0, -1))
-        try:
-            rim = _girth(foam, max(fall[panel] - reach, float(foam.vertices[:, 2].min())))
-            curves[name] = _along(rim, first, last)
-        except InputError:
-            if not partial:
-                raise
-    meet = {end: [e for e in others if e[0] in curves] for end, others in meet.items()}
-    return {name: _joined(name, curves, meet) for name in curves}
-
-
-def _joined(
-    name: str,
-    curves: Mapping[str, FloatArray],
-    meet: Mapping[tuple[str, int], Sequence[tuple[str, int]]],
-) -> FloatArray:
-    """The curve with its ends at the very points where its neighbours' are.
-
-    Two targets for one sewn corner would pull its seam open.
-    """
-    curve = curves[name]
-    shift = [
-        np.mean([curves[other][k] for other, k in meet[name, end]], axis=0) - curve[end]
-        for end in (0, -1)
-    ]
-    share = np.linspace(0.0, 1.0, len(curve))[:, None]
-    return np.asarray(curve + (1 - share) * shift[0] + share * shift[1])
-
-
-def _reach(edge: FloatArray, outline: FloatArray) -> float:
-    """How far [m] an edge lies from the opposite side of its panel."""
-    chord = edge[-1] - edge[0]
-    if np.linalg.norm(chord) < _CLOSED:
-        return float(np.ptp(outline, axis=0).min()) / 2
-    along = chord / np.linalg.norm(chord)
-    across = (outline - edge[0]) @ np.array([-along[1], along[0]])
-    return float(across.max())
-
-
-def _girth(foam: Foam, height: float) -> FloatArray:
-    """Closed curve (k, 3) [m] round the foam at a height, the first point repeated."""
-    side = foam.vertices[foam.faces[:, [0, 1, 1, 2, 2, 0]]].reshape(-1, 2, 3)
-    start, end = side[:, 0], side[:, 1]
-    rise = end[:, 2] - start[:, 2]
-    crosses = ((start[:, 2] - height) * (end[:, 2] - height) <= 0.0) & (rise != 0.0)
-    share = (height - start[crosses, 2:]) / rise[crosses, None]
-    section = (start[crosses] + share * (end[crosses] - start[crosses]))[:, :2]
-    try:
-        hull = section[ConvexHull(section).vertices]
-    except (QhullError, ValueError) as error:
-        raise _no_girth() from error
-    hull = np.concatenate([hull, hull[:1]])
-    arc = arc_length(hull)
-    at = np.linspace(0.0, arc[-1], 401)
-    flat = np.column_stack([np.interp(at, arc, hull[:, k]) for k in range(2)])
-    return np.column_stack([flat, np.full(len(flat), height)])
-
-
-def _along(rim: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Stretch of the rim from the place nearest to ``start`` to that of ``end``, the short way."""
-    points = rim[:-1]
-    first, last = (int(np.hypot(*(points[:, :2] - e).T).argmin()) for e in (start, end))
-    n = len(points)
-    ahead = (first + np.arange((last - first) % n + 1)) % n
-    back = (first - np.arange((first - last) % n + 1)) % n
-    line = points[min(ahead, back, key=len)]
-    if np.hypot(*(start - end)) < _CLOSED:
-        line = np.roll(points, -first, axis=0)[[*range(n), 0]]
-    if len(line) < 2:
-        raise _no_girth()
-    arc = arc_length(line)
-    at = np.linspace(0.0, arc[-1], _SAMPLES)
-    return np.column_stack([np.interp(at, arc, line[:, k]) for k in range(3)])
-
-
-def _no_girth() -> InputError:
-    return InputError.single(
-        "foam",
-        got="no girth below a free edge of the cover",
-        expected="a foam as wide as the cover (is --unit right?)",
-    )
-
-
-def outline_area(outline: FloatArray) -> float:
-    """Area [m2] inside a closed outline (k, 2) [m]."""
-    x, y = outline.T
-    return 0.5 * float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)))

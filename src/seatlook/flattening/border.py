@@ -2,34 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from seatlook import mesh
 from seatlook.flattening.surface import FREE, DesignSurface, Side, sides
-from seatlook.mesh.places import place_words
-from seatlook.model import FloatArray
-
-BORDER = "border"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Border:
-    """One loop of the border.
-
-    Parameters
-    ----------
-    name : ``border``, or ``border.PLACE`` where a surface has several
-    edges : names of the panels' free edges, one after the other
-    curve : (k, 3) float64 [m]     closed, the first point repeated
-    junctions : float [m], one more than edges    where along the curve the edges begin and end
-    """
-
-    name: str
-    edges: tuple[str, ...]
-    curve: FloatArray
-    junctions: tuple[float, ...]
+from seatlook.mesh.places import border_names
+from seatlook.model import Border
 
 
 def borders(form: DesignSurface) -> tuple[Border, ...]:
@@ -51,14 +29,13 @@ def borders(form: DesignSurface) -> tuple[Border, ...]:
     """
     loops = _loops([side for side in sides(form.patches()) if side.neighbour == FREE])
     curves = [form.vertices[_run(loop)] for loop in loops]
-    words = place_words(curves)
     result = []
-    for loop, curve, word in zip(loops, curves, words, strict=True):
+    for loop, curve, name in zip(loops, curves, border_names(curves), strict=True):
         arc = mesh.arc_length(curve)
         count = np.cumsum([0, *(side.count for side in loop)])
         result.append(
             Border(
-                name=f"{BORDER}.{word}" if word else BORDER,
+                name=name,
                 edges=tuple(side.name for side in loop),
                 curve=curve,
                 junctions=tuple(arc[count].tolist()),

@@ -8,13 +8,13 @@ from pathlib import Path
 from types import MappingProxyType
 
 from seatlook.files import reader, write_text
-from seatlook.flattening.border import Border, borders
+from seatlook.flattening.border import borders
 from seatlook.flattening.flatten import Flattened
 from seatlook.flattening.pattern import pair
 from seatlook.flattening.surface import DesignSurface, sides
 from seatlook.io.schema import MM, Array, Kind, Named, Table, Texts, place_mm, read_table
 from seatlook.io.toml import quoted, read_document, toml_key
-from seatlook.model import FloatArray, Pose
+from seatlook.model import Border, FloatArray, Pose
 
 _POINTS = place_mm(3, many=True)
 _KEYS: dict[str, Kind] = {

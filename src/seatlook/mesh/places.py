@@ -40,6 +40,17 @@ def place_words(lines: Sequence[FloatArray]) -> tuple[str, ...]:
     return tuple(words)
 
 
+def border_names(curves: Sequence[FloatArray]) -> tuple[str, ...]:
+    """Names of the free borders of a cover, by their places: ``border``, ``border.left``.
+
+    Examples
+    --------
+    >>> border_names([np.eye(3)])
+    ('border',)
+    """
+    return tuple(f"border.{word}" if word else "border" for word in place_words(curves))
+
+
 def _part(group: list[int], centres: FloatArray, lengths: FloatArray, words: list[str]) -> None:
     """Add a word to those of a group, parted at the widest gap of their centres."""
     if len(group) == 1:

@@ -28,7 +28,7 @@ from seatlook.model.light import (
 )
 from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
-from seatlook.model.scene import Design, Frame, Hook, Limit, Pose, Scene, Verdict, ZoneBox
+from seatlook.model.scene import Border, Design, Frame, Hook, Limit, Pose, Scene, Verdict, ZoneBox
 from seatlook.model.shells import ShellResult, Shells, ShellState
 from seatlook.model.stage import Stage, stage_units
 from seatlook.model.table import Field
@@ -40,6 +40,7 @@ __all__ = [
     "VIEWS",
     "Anchor",
     "Appearance",
+    "Border",
     "Camera",
     "Cover",
     "Criteria",

@@ -111,6 +111,30 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Border:
+    """One free border of a cover: a closed line of free edges, and the curve they are pulled to.
+
+    Parameters
+    ----------
+    name : ``border``, or ``border.PLACE`` where a cover has several
+    edges : names of the panels' free edges, one after the other
+    curve : (k, 3) float64 [m]     closed, the first point repeated
+    junctions : float [m], one more than edges    where along the curve the edges begin and end
+    """
+
+    name: str
+    edges: tuple[str, ...]
+    curve: FloatArray
+    junctions: tuple[float, ...]
+
+    def frame(self, stage: str) -> Frame:
+        """Return the tie that pulls the edges to the curve, which has the border's name."""
+        return Frame(
+            name=self.name, edges=self.edges, curve=self.name, stage=stage, junctions=self.junctions
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ZoneBox:
     """A user's rectangle in pattern coordinates [m] with a visibility class."""
 

@@ -38,7 +38,7 @@ from seatlook.io.pattern.dxf import Reading
 from seatlook.io.pattern.units import Units
 from seatlook.io.surface.axes import Unit, Up
 from seatlook.mesh.mending.mend import AS_IT_IS, Mending
-from seatlook.model import FloatArray, Frame, Hook, Pattern
+from seatlook.model import FloatArray, Hook, Pattern
 
 SEAMS = "seams.toml"
 _NEAREST_WIRE = 0.08  # m from a seam to the wire it may be hooked to
@@ -131,7 +131,6 @@ def init(
         filling.body,
         first=choices.get("top"),
         turn_deg=choices.get("turn_deg", 0.0),
-        free=proposal.free,
         partial=True,
     )
     if own_seams is None:
@@ -179,11 +178,9 @@ def _draft(
         guessed=choices.get("seams") is None,
         material=material,
         foam=foam,
-        curves=layout.curves,
+        curves={border.name: border.curve for border in layout.borders},
         hooks=hooks_beside(lines, foam.body.curves, reach=_NEAREST_WIRE, stage=HOOK),
-        frames=tuple(
-            Frame(name=edge, edges=(edge,), curve=edge, stage=COVER) for edge in layout.curves
-        ),
+        frames=tuple(border.frame(COVER) for border in layout.borders),
         poses=layout.poses,
         element_size_mm=element_size(io.read_material(material).fabric, foam.body.material),
     )

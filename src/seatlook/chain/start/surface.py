@@ -38,7 +38,6 @@ from seatlook.flattening.lie import Lie, read_lie
 from seatlook.io.surface.axes import Unit, Up
 from seatlook.io.surface.formats import READERS
 from seatlook.mesh.mending.mend import AS_IT_IS, Mending
-from seatlook.model import Frame
 
 WIRES = "wires.toml"
 NEAREST_WIRE = 0.030  # m from a seam of the design to the wire it is hooked to
@@ -206,10 +205,7 @@ def _scene_of(
         curves={border.name: border.curve for border in lie.borders},
         design=home / PANELS if (home / PANELS).exists() else None,
         hooks=hooks_beside(lie.seams, foam.body.curves, reach=NEAREST_WIRE, stage=HOOK),
-        frames=tuple(
-            Frame(name=b.name, edges=b.edges, curve=b.name, stage=COVER, junctions=b.junctions)
-            for b in lie.borders
-        ),
+        frames=tuple(border.frame(COVER) for border in lie.borders),
         poses=lie.poses,
         element_size_mm=choices.get("element_size_mm") or size,
         seed=choices.get("seed", 0),

@@ -6,7 +6,7 @@ import numpy as np
 
 from seatlook.assembly.ease import notches_on
 from seatlook.assembly.seam_guess import Proposal
-from seatlook.assembly.unfolding import Layout, outline_area
+from seatlook.assembly.unfolding import Layout
 from seatlook.io.toml import quoted
 from seatlook.mesh import face_areas
 from seatlook.model import Foam, Pattern
@@ -62,19 +62,20 @@ def what_is_missing(proposal: Proposal, layout: Layout) -> tuple[str, ...]:
             f"seams that join {', '.join(layout.apart)} to {layout.first}; "
             "until then they lie beside the foam"
         )
+    framed = {edge for border in layout.borders for edge in border.edges}
     bare = [
         name
         for name in proposal.free
-        if name not in layout.curves and proposal.pattern.edges[name].panel not in layout.apart
+        if name not in framed and proposal.pattern.edges[name].panel not in layout.apart
     ]
     if bare:
-        missing.append(f"curves for free edges that find no girth of the foam: {', '.join(bare)}")
+        missing.append(f"curves for free edges that make no closed border: {', '.join(bare)}")
     return tuple(missing)
 
 
 def scale_notes(pattern: Pattern, foam: Foam) -> tuple[str, ...]:
     """Name a pattern that is far too large or too small for its foam."""
-    cloth = sum(outline_area(panel.outline) for panel in pattern.panels)
+    cloth = sum(panel.area for panel in pattern.panels)
     ratio = cloth / float(face_areas(foam.vertices, foam.faces).sum())
     if _SMALLEST <= ratio <= _LARGEST:
         return ()
