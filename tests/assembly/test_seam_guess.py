@@ -10,8 +10,8 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
+from seatlook.assembly.panel_names import hand, named_variants
 from seatlook.assembly.seam_guess import SURE, Proposal, propose_seams
-from seatlook.assembly.seam_guess.kin import hand, named_variants
 from seatlook.assembly.seam_guess.outlines import find_stops
 from seatlook.flattening import flatten
 from seatlook.io.pattern.mirror import mirrored
@@ -208,3 +208,35 @@ def test_thirty_panels_take_a_few_seconds():
 def test_the_same_panels_give_the_same_guess(cushion):
     first, second = (propose_seams(with_notches(cushion, 0.0, seed=1)) for _ in range(2))
     assert first.reasons == second.reasons
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_strip_round_a_top_is_closed(seed):
+    rng = np.random.default_rng(seed)
+    radius, height = rng.uniform(150, 400), rng.uniform(50, 200)
+    turn = np.linspace(0, 2 * np.pi, 161)[:-1]
+    disc = radius * np.column_stack([np.sin(turn), -np.cos(turn)])
+    girth = float(np.linalg.norm(np.diff(disc, axis=0, append=disc[:1]), axis=1).sum())
+    top = panel("TOP", disc.tolist(), corners=1)
+    slant = 0.015 * girth
+    corners = [(0, 0), (girth + 2 * slant, 0), (girth + slant, height), (slant, height)]
+    side = panel("SIDE", corners)
+    found = propose_seams([top, side])
+    panels = sorted(sorted(e.rpartition(".")[0] for e in pair) for pair in sewn(found))
+    assert panels == [["SIDE", "SIDE"], ["SIDE", "TOP"]]
+
+
+def test_a_dart_among_other_panels_that_has_no_twin_is_not_sure():
+    slit = [(0, 0), (190, 0), (200, 150), (210, 0), (400, 0), (370, 520), (40, 500)]
+    other = [(0, 0), (310, 0), (290, 130), (15, 120)]
+    found = propose_seams([panel("FRONT_SKIRT", slit), panel("YOKE", other)])
+    assert not any(len({e.rpartition(".")[0] for e in pair}) == 1 for pair in sewn(found))
+
+
+def test_seams_between_the_same_panels_have_names_of_their_place():
+    one = panel("A", [(0, 0), (300, 0), (340, 210), (0, 260)])
+    other = replace(mirrored(panel("x", [(0, 0), (300, 0), (340, 210), (0, 260)])), name="B")
+    found = propose_seams([one, other])
+    names = [seam.name for seam in found.pattern.seams]
+    assert len(names) == len(set(names))
+    assert not any(name[-1].isdigit() for name in names)

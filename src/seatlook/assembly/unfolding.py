@@ -13,7 +13,7 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook.assembly.girth import lay_borders
-from seatlook.assembly.seam_guess.kin import hand, words
+from seatlook.assembly.panel_names import hand, words
 from seatlook.errors import InputError, did_you_mean
 from seatlook.mesh import arc_length, face_areas
 from seatlook.model import Border, FloatArray, Foam, Pattern, Pose, Seam

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from seatlook.assembly.seam_guess.kin import Kin, hand
+from seatlook.assembly.panel_names import hand
+from seatlook.assembly.seam_guess.kin import Kin
 from seatlook.assembly.seam_guess.notches import match_notches, notches_at_joints
 from seatlook.assembly.seam_guess.outlines import Outlines, Side
 from seatlook.model import FloatArray
