@@ -1,4 +1,4 @@
-"""What the names of panels tell: the side of the seat, and whether two are variants of one piece."""
+"""What names of panels tell: the side of the seat, and whether two are variants of one piece."""
 
 from __future__ import annotations
 
