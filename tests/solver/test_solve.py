@@ -255,7 +255,8 @@ def hung(target_gap):
 def test_without_foam_a_strip_hangs_between_its_frames():
     s = solve(hung(0.001), strict=True)
     assert s.figures["frame_gap_max"] < 1e-5
-    assert s.figures["ties_z"] == pytest.approx(0.6 * 9.81 * 0.004, rel=1e-3)
+    # Every vertex may be out of balance by 1e-3 of the mean force.
+    assert s.figures["ties_z"] == pytest.approx(0.6 * 9.81 * 0.004, rel=3e-3)
     assert "contact_force" not in s.figures
 
 

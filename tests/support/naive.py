@@ -13,6 +13,18 @@ def edge_strains(x, ends, length, rows, offset):
     return 0.5 * (square - 1.0)
 
 
+def along_rims(E, edges, area):
+    """Strains E (m, ...) after triangles with one free edge and their neighbours have exchanged."""
+    out, free = E.copy(), edges.free[edges.of_face].sum(axis=1)
+    for a, b in edges.faces[~edges.free]:
+        if (free[a] == 1) != (free[b] == 1):
+            # Half of a third of the way to each neighbour, in the area that both have.
+            part = min(area[a], area[b]) / 6.0 * (E[b] - E[a])
+            out[a] += part / area[a]
+            out[b] -= part / area[b]
+    return out
+
+
 def curve(strain, stiffness, e):
     """Energy and stress of a piecewise linear stiffness by fine quadrature from zero strain."""
     s = np.linspace(0.0, e, 20001)

@@ -195,7 +195,9 @@ def test_cover_remembers_over_a_restart():
         return dataclasses.replace(made, materials=(material,))
 
     first = solve(held(0.05), strict=True)
-    np.testing.assert_allclose(first.strain_peak[:, 0], 0.05, rtol=2e-2)
+    # At rest within 1 %; on the way the triangles at both ends swing a little beyond.
+    np.testing.assert_allclose(first.strain_mid[:, 0, 0], 0.05, rtol=1e-2)
+    np.testing.assert_allclose(first.strain_peak[:, 0], 0.05, rtol=4e-2)
     second = solve(held(0.035), start=first, strict=True)
     np.testing.assert_array_equal(second.strain_peak[:, 0], first.strain_peak[:, 0])
     pull = abs(second.forces["end 1"][:, 0].sum()) / 0.04 / np.sqrt(1.07)

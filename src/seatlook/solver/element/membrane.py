@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array, eye_array, kron
+from scipy.sparse import bsr_array, csc_array, csr_array, eye_array, kron
 
 from seatlook.model import Fabric, FloatArray, IntArray
 from seatlook.solver.element.constitutive import constitutive_tables, typical_stiffness
@@ -16,6 +16,9 @@ from seatlook.solver.element.unloading import Unloading
 from seatlook.solver.kernels import membrane as kernels
 from seatlook.solver.kernels.curvature import along_edges
 
+# A triangle's centroid stands a third of its height above an edge.
+_CENTROID = 1.0 / 3.0
+
 
 class Membrane:
     """Membrane energy ``sum A psi(E)`` [J] over all panels.
@@ -23,7 +26,10 @@ class Membrane:
     The strain of a triangle is that of its three edges, each as long as the arc that the bending
     element's curvature makes of its chord. In the plane this is the constant-strain triangle, so
     the patch test holds on every mesh; bent, a quadratic surface has the strain it should have,
-    which spares the false bending stiffness and most of the locking of chords.
+    which spares the false bending stiffness and most of the locking of chords. Along a free edge
+    the strain is often a peak, which belongs to the edge and not to the whole triangle: in the row
+    along it strains run linearly from the rim to the next row of edges, and each triangle has the
+    one at its centroid. What one gains its neighbour loses, so the patch test is kept.
 
     psi = warp curve (E11) + weft curve (E22) + shear curve (2 E12) + coupling. Stiffness is
     piecewise linear in Green strain, so stress is smooth and energy a cubic. In compression it
@@ -68,7 +74,9 @@ class Membrane:
         self._bow = np.empty((len(edges.ends), 3))
         self._edge_strain = np.empty(len(edges.ends))
         self._pull = np.empty(len(edges.ends))
-        self._E = np.empty((len(area), 3))
+        self._E, self._tension = np.empty((len(area), 3)), np.empty((len(area), 3))
+        self._pairs, self._share = _along_rims(edges, area)
+        self._move = np.empty((len(self._pairs), 3))
 
     @property
     def peaks(self) -> FloatArray | None:
@@ -99,20 +107,13 @@ class Membrane:
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N] to ``gradient``."""
         self._deform(x)
+        S = self._tension
         energy = kernels.tensions(
-            self._E,
-            self._edges.of_face,
-            self._natural,
-            self._area,
-            self._fabric,
-            *self._constitutive,
-            self._constants,
-            self._pull,
+            self._E, self._area, self._fabric, *self._constitutive, self._constants, S
         )
         if self._unloading is not None:
-            energy += self._unloading.tensions(
-                self._E, self._edges.of_face, self._natural, self._area, self._pull
-            )
+            energy += self._unloading.tensions(self._E, self._area, S)
+        self._pull_edges(S)
         kernels.forces(
             x, self._pull, self._edges.ends, self._edges.length, *self._rows, self._bow, gradient
         )
@@ -120,11 +121,14 @@ class Membrane:
 
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
         """Second derivative (3n, 3n) [N/m]; ``definite`` keeps the tensile part of the stress."""
-        material, pull = self.tangent(x, definite=definite)
-        of_face = self._edges.of_face
-        pairs = (np.repeat(of_face, 3, axis=1).ravel(), np.tile(of_face, (1, 3)).ravel())
-        count = len(self._edges.ends)
-        coupled = csr_array((material.ravel(), pairs), shape=(count, count))
+        self._deform(x)
+        pull = self._pulls(definite)
+        unit = np.broadcast_to(np.eye(3), self._natural.shape).copy()
+        blocks = self._material(unit)
+        begin = np.arange(len(blocks) + 1)
+        size = 3 * len(blocks)
+        material = bsr_array((blocks, begin[:-1], begin), shape=(size, size))
+        coupled = csr_array(self._measure.T @ (material @ self._measure))
         rates = self._rates(x)
         geometric = self._geometric(pull, definite)
         return csc_array(rates.T @ (coupled @ rates) + kron(geometric, eye_array(3)))
@@ -134,29 +138,12 @@ class Membrane:
 
         Returns
         -------
-        material : (m, 3, 3)   second derivative of each triangle's energy by its edges' strains
+        material : (m, 3, 3)   second derivative of each triangle's energy by its edges' strains; at
+            a rim without what its neighbours have to do with it
         pull : (e,)            first derivative of all; ``definite`` keeps the tensile stress only
         """
         self._deform(x)
-        material = np.empty((len(self._area), 3, 3))
-        kernels.edge_stiffness(
-            self._E,
-            self._natural,
-            self._area,
-            self._fabric,
-            *self._constitutive,
-            self._constants,
-            material,
-        )
-        if self._unloading is not None:
-            self._unloading.stiffness(self._E, self._natural, self._area, material)
-        stress = self._stress()
-        if definite:
-            kernels.clamp(stress)
-        share = self._area[:, None] * np.einsum("tck,tc->tk", self._natural, stress)
-        of_face, count = self._edges.of_face.ravel(), len(self._edges.ends)
-        pull = np.bincount(of_face, share.ravel(), minlength=count)
-        return material, np.asarray(pull, dtype=np.float64)
+        return self._material(self._natural), self._pulls(definite).copy()
 
     def stiffness(self) -> csc_array:
         """Scalar stiffness (n, n) [N/m] of plane triangles, warp and weft each with its own."""
@@ -168,6 +155,50 @@ class Membrane:
         begin, nodes, values = self._rows
         bow = csr_array((values, nodes, begin), shape=(len(begin) - 1, self._count))
         return _common(tangent_matrix(self._count, self._edges), bow)
+
+    @cached_property
+    def _measure(self) -> csr_array:
+        """Strains of all triangles from those of the edges, (3m, e)."""
+        m, e = self._edges.of_face.shape[0], len(self._edges.ends)
+        rows = np.repeat(np.arange(3 * m), 3)
+        columns = np.repeat(self._edges.of_face[:, None], 3, axis=1).ravel()
+        own = csr_array((self._natural.ravel(), (rows, columns)), shape=(3 * m, e))
+        pairs, share = self._pairs, self._share
+        place = np.concatenate([pairs[:, 0], pairs[:, 0], pairs[:, 1], pairs[:, 1]])
+        other = np.concatenate([pairs[:, 1], pairs[:, 0], pairs[:, 0], pairs[:, 1]])
+        change = np.concatenate([share[:, 0], -share[:, 0], share[:, 1], -share[:, 1]])
+        mixed = eye_array(m) + csr_array((change, (place, other)), shape=(m, m))
+        return csr_array(kron(mixed, eye_array(3)) @ own)
+
+    def _material(self, natural: FloatArray) -> FloatArray:
+        """Second derivative (m, 3, 3) [J] of the energies at hand by what ``natural`` takes."""
+        material = np.empty((len(self._area), 3, 3))
+        kernels.edge_stiffness(
+            self._E,
+            natural,
+            self._area,
+            self._fabric,
+            *self._constitutive,
+            self._constants,
+            material,
+        )
+        if self._unloading is not None:
+            self._unloading.stiffness(self._E, natural, self._area, material)
+        return material
+
+    def _pulls(self, definite: bool) -> FloatArray:
+        """Pull (e,) [J] of the edges at hand; ``definite`` keeps the tensile stress only."""
+        stress = self._stress()
+        if definite:
+            kernels.clamp(stress)
+        stress *= self._area[:, None]
+        self._pull_edges(stress)
+        return self._pull
+
+    def _pull_edges(self, tension: FloatArray) -> None:
+        """Fill the pull of the edges from areas times stresses (m, 3) [J]."""
+        kernels.exchange_back(tension, self._pairs, self._share, self._move)
+        kernels.pulls(tension, self._edges.of_face, self._natural, self._pull)
 
     def _rates(self, x: FloatArray) -> csr_array:
         """Derivative (e, 3n) of the edge strains by the positions."""
@@ -202,6 +233,7 @@ class Membrane:
             x, edges.ends, edges.length, *self._rows, self._bow_offset, self._bow, self._edge_strain
         )
         kernels.strains(self._edge_strain, edges.of_face, self._natural, self._E)
+        kernels.exchange(self._E, self._pairs, self._share, self._move)
 
     def _plane_laplacian(self, count: int, fabrics: Sequence[Fabric]) -> csc_array:
         warp = np.array([typical_stiffness(f.warp) for f in fabrics])[self._fabric]
@@ -224,6 +256,20 @@ def natural_strains(edges: Edges) -> FloatArray:
     out = np.stack([np.cross(along[:, k - 2], along[:, k - 1]) for k in range(3)], axis=2)
     volume = (along[:, 0] * out[:, :, 0]).sum(axis=1)
     return np.ascontiguousarray(out / volume[:, None, None])
+
+
+def _along_rims(edges: Edges, area: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Pairs (p, 2) of a triangle at a rim and one beside it, and the shares that they exchange.
+
+    Triangles with two free edges, and two beside each other at opposite rims, have no row of edges
+    behind the rim; they keep their strain.
+    """
+    rim = edges.free[edges.of_face].sum(axis=1) == 1
+    pairs = edges.faces[~edges.free]
+    pairs = np.ascontiguousarray(pairs[rim[pairs].sum(axis=1) == 1])
+    # Half for each of two neighbours; of the smaller area, so that no strain overshoots.
+    smaller = area[pairs].min(axis=1)[:, None]
+    return pairs, 0.5 * _CENTROID * smaller / area[pairs]
 
 
 def _bow_offset(edges: Edges, offset: FloatArray) -> FloatArray:

@@ -43,12 +43,9 @@ class Unloading:
         """Take strains (m, 2 or 3) into the history."""
         kernels.wear(np.array(E, order="C"), *self._curves, self._history)
 
-    def tensions(
-        self, E: FloatArray, of_face: IntArray, natural: FloatArray, area: FloatArray,
-        pull: FloatArray,
-    ) -> float:  # fmt: skip
-        """Add what is lacking to the pull (e,) of the edges, and return the lacking energy [J]."""
-        return float(kernels.relieve(self._lack(E), of_face, natural, area, pull))
+    def tensions(self, E: FloatArray, area: FloatArray, S: FloatArray) -> float:
+        """Add what is lacking to S (m, 3) [J], areas times stresses; return its energy [J]."""
+        return float(kernels.relieve(self._lack(E), area, S))
 
     def stress(self, E: FloatArray, S: FloatArray) -> None:
         """Add the lacking stress to S (m, 3) [N/m]."""

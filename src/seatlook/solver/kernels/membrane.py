@@ -99,19 +99,53 @@ def strains(edge_strain, of_face, natural, E):
 
 
 @njit(cache=True)
-def tensions(E, of_face, natural, area, fabric, tables, counts, constants, pull):
-    """Total energy; fills ``pull`` (e,) [J], its derivative by the strain of every edge."""
+def exchange(values, pairs, share, move):
+    """Let the triangles ``pairs`` (p, 2) exchange a ``share`` (p, 2) of what they differ by.
+
+    Shares are inverse to the areas of the two. ``move`` (p, 3) is room for the differences.
+    """
+    for i in range(len(pairs)):
+        for c in range(3):
+            move[i, c] = values[pairs[i, 1], c] - values[pairs[i, 0], c]
+    for i in range(len(pairs)):
+        for c in range(3):
+            values[pairs[i, 0], c] += share[i, 0] * move[i, c]
+            values[pairs[i, 1], c] -= share[i, 1] * move[i, c]
+
+
+@njit(cache=True)
+def exchange_back(values, pairs, share, move):
+    """Transpose of ``exchange``."""
+    for i in range(len(pairs)):
+        for c in range(3):
+            move[i, c] = share[i, 1] * values[pairs[i, 1], c] - share[i, 0] * values[pairs[i, 0], c]
+    for i in range(len(pairs)):
+        for c in range(3):
+            values[pairs[i, 0], c] += move[i, c]
+            values[pairs[i, 1], c] -= move[i, c]
+
+
+@njit(cache=True)
+def tensions(E, area, fabric, tables, counts, constants, S):
+    """Total energy; fills S (m, 3) [J], its derivative by the strains of every triangle."""
     total = 0.0
+    for t in range(len(E)):
+        f, a = fabric[t], area[t]
+        psi, s11, s22, s12 = constitutive(tables, counts, constants, f, E[t, 0], E[t, 1], E[t, 2])
+        total += a * psi
+        S[t, 0], S[t, 1], S[t, 2] = a * s11, a * s22, a * s12
+    return total
+
+
+@njit(cache=True)
+def pulls(S, of_face, natural, pull):
+    """Fill ``pull`` (e,) [J], the energy's derivative by the strain of every edge."""
     pull[:] = 0.0
     for t in range(len(of_face)):
-        f = fabric[t]
-        psi, s11, s22, s12 = constitutive(tables, counts, constants, f, E[t, 0], E[t, 1], E[t, 2])
-        total += area[t] * psi
         for k in range(3):
-            pull[of_face[t, k]] += area[t] * (
-                natural[t, 0, k] * s11 + natural[t, 1, k] * s22 + natural[t, 2, k] * s12
+            pull[of_face[t, k]] += (
+                natural[t, 0, k] * S[t, 0] + natural[t, 1, k] * S[t, 1] + natural[t, 2, k] * S[t, 2]
             )
-    return total
 
 
 @njit(cache=True)

@@ -54,16 +54,14 @@ def lack(E, fabric, loading, counts, back, back_counts, history, out):
 
 
 @njit(cache=True)
-def relieve(lacking, of_face, natural, area, pull):
-    """Add the lacking stress to the pull (e,) [J] of the edges; return the lacking energy [J]."""
+def relieve(lacking, area, S):
+    """Add the lacking stress to S (m, 3) [J], areas times stresses; return the energy [J]."""
     total = 0.0
-    for t in range(len(of_face)):
+    for t in range(len(lacking)):
         a = area[t]
         total += a * (lacking[t, 0, 0] + lacking[t, 1, 0])
-        for k in range(3):
-            pull[of_face[t, k]] += a * (
-                natural[t, 0, k] * lacking[t, 0, 1] + natural[t, 1, k] * lacking[t, 1, 1]
-            )
+        S[t, 0] += a * lacking[t, 0, 1]
+        S[t, 1] += a * lacking[t, 1, 1]
     return total
 
 
