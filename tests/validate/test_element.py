@@ -8,7 +8,9 @@ from seatlook.model import Curve, Fabric
 from seatlook.solver import Load, Sheet, SheetSettings, Support, solve_sheet
 from seatlook.solver.element.elastic import ElasticSheet
 from support import fabrics, meshes
+from support.reference import annulus
 from support.reference.elastica import hanging_tip
+from support.reference.rim_layer import rim_stiffness
 from support.reference.rolled import missed
 from support.reference.waves import (
     false_bending,
@@ -269,3 +271,34 @@ def test_roll_up_to_a_full_circle(kind, slenderness, report):
         f"{kind}, t/L {slenderness}: moment {moment:+.5f} off B kappa, end and moment {gap:.5f} L"
     )
     assert gap <= 1e-3
+
+
+@pytest.mark.parametrize(
+    ("size", "bar"),
+    [
+        pytest.param(1.0, 0.01, marks=pytest.mark.xfail(strict=True, reason="0.0118")),
+        pytest.param(0.7, 0.005, marks=pytest.mark.xfail(strict=True, reason="0.0095")),
+        (0.5, 0.006),
+    ],
+)
+def test_slit_annulus(size, bar, report):
+    mesh = annulus.uniform(size)
+    error = annulus.deflections(*mesh)[0] / annulus.THIN - 1
+    report(f"{len(mesh[0])} vertices: {error[0]:+.4f} {error[1]:+.4f} of a thin plate")
+    assert abs(error).max() <= bar
+
+
+@pytest.mark.parametrize("finest", [1.0, 0.4])
+def test_slit_annulus_on_a_polar_grid(finest, report):
+    error = annulus.deflections(*annulus.polar(8, 64, finest))[0] / annulus.THIN - 1
+    report(f"8 x 64, rows at the rims {finest} of the mean: {error[0]:+.4f} {error[1]:+.4f}")
+    assert abs(error).max() <= 0.02
+
+
+@pytest.mark.parametrize("kind", meshes.KINDS)
+def test_layer_along_a_free_edge(kind, report):
+    errors = [rim_stiffness(kind, ratio) for ratio in (2.0, 1.0, 0.5)]
+    report(f"{kind}: elements 2, 1 and 1/2 of the layer {errors[0]:+.3f} {errors[1]:+.3f} "
+           f"{errors[2]:+.3f}")  # fmt: skip
+    assert abs(errors[2]) <= 0.09
+    assert abs(errors[1]) <= (0.22 if kind == "alt" else 0.16)
