@@ -3,36 +3,17 @@
 from __future__ import annotations
 
 import contextlib
-import csv
 import json
-import os
-import re
-import shutil
 import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
 from seatlook.cli import app, run
-from seatlook.wrinkle import INDICES
-
-pytestmark = pytest.mark.first
 
 COMMANDS = [name for name in app if not name.startswith("-")]
-
-
-def seatlook(*words: str, cwd: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "seatlook", *words],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        env={**os.environ, **environment},
-        check=False,
-    )
 
 
 @pytest.mark.parametrize("command", [*COMMANDS, "materials list", "materials show"])
@@ -123,65 +104,6 @@ def test_a_fault_of_seatlook_is_told_from_wrong_input(capsys, monkeypatch):
     assert "ZeroDivisionError" in capsys.readouterr().err
 
 
-def test_doctor_names_the_library_it_found(tmp_path):
-    done = seatlook("doctor", "--json", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
-    assert found["GL window"].startswith("vtk")
-    assert found["cores"] == os.cpu_count()
-    assert found["kernel threads"] >= 1
-    assert found["kernel cache writable"] is True
-    assert found["field cache writable"] is True
-    assert found["field cache"] == str(Path(os.environ["SEATLOOK_CACHE_DIR"]) / "fields")
-    assert found["fields in cache"].endswith(" MB")
-    assert done.stderr == "nothing to do: this machine can solve and draw\n"
-    quiet = seatlook("doctor", "--json", "--quiet", cwd=tmp_path)
-    assert quiet.stderr == ""
-
-
-def test_doctor_says_what_to_set(tmp_path):
-    done = seatlook(
-        "doctor", cwd=tmp_path, OMP_NUM_THREADS="999", NUMBA_CACHE_DIR="/proc/none/such"
-    )
-    assert done.returncode == 0
-    assert f"more threads (999) than cores: set OMP_NUM_THREADS={os.cpu_count()} or less" in (
-        done.stderr
-    )
-    (tmp_path / "file").write_text("in the way")
-    shut = seatlook("doctor", cwd=tmp_path, SEATLOOK_CACHE_DIR=str(tmp_path / "file"))
-    assert f"{tmp_path / 'file' / 'fields'} cannot be written" in shut.stderr
-
-
-HIDDEN = """
-import ctypes, sys
-real = ctypes.CDLL
-class Hidden(real):
-    def __init__(self, name, *args, **options):
-        if name and ("EGL" in str(name) or "OSMesa" in str(name)):
-            raise OSError(f"{name}: cannot open shared object file")
-        super().__init__(name, *args, **options)
-ctypes.CDLL = Hidden
-from seatlook.cli import run
-sys.exit(run(sys.argv[1:]))
-"""
-
-
-@pytest.mark.parametrize("command", ["doctor", "evaluate"])
-def test_without_a_gl_library_it_ends_with_3_before_any_work(command, demo_scene, tmp_path):
-    words = ["doctor"]
-    if command == "evaluate":
-        words = ["evaluate", str(demo_scene), "--out", str(tmp_path / "out")]
-    done = subprocess.run(
-        [sys.executable, "-c", HIDDEN, *words], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 3
-    assert bool(re.search(r"(?m)^GL library +-$", done.stdout)) == (command == "doctor")
-    assert "as root:" in done.stderr
-    assert "without root:" in done.stderr
-    assert "Traceback" not in done.stderr
-    assert not (tmp_path / "out").exists()
-
-
 def test_the_demo_scene_is_complete_and_says_what_is_spoiled(demo_scene):
     from seatlook import io
 
@@ -195,95 +117,6 @@ def test_the_demo_scene_is_complete_and_says_what_is_spoiled(demo_scene):
     assert scene.materials["INSERT"].name == "suede-laminate"
     assert scene.materials["FRONT"].name == "leather-laminate"
     assert "Spoiled on purpose: short REAR 1.0%" in demo_scene.read_text()
-
-
-def test_check_tells_what_would_be_solved(demo_scene, capsys):
-    assert run(["check", str(demo_scene), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert (found["panels"], found["seams"], found["hooks_and_frames"]) == (7, 14, 3)
-    assert found["element_size_mm"] == pytest.approx(20, rel=0.15)
-    ratio = found["wavelength_mm"] / found["element_size_mm"]
-    assert found["wavelength_over_element_size"] == pytest.approx(ratio)
-    assert found["expected_status"] == "converged, not resolved"
-    waves = {wave["material"]: wave for wave in found["waves"]}
-    assert not waves["leather-laminate"]["resolved"]
-    least = min(wave["wavelength_over_element_size"] for wave in waves.values())
-    assert least == pytest.approx(ratio, rel=0.05)
-    ease = {row["seam"]: row for row in found["ease"]}
-    # The rear panel is cut 1 % narrower across its grain; the insert's rear edge is not.
-    assert ease["INSERT-REAR"]["ease_percent"] == pytest.approx(1.0, abs=0.15)
-    assert ease["INSERT-REAR"]["ease_mm"] == pytest.approx(2.5, abs=0.4)
-    assert abs(ease["INSERT-BOLSTER_L"]["ease_percent"]) < 0.01
-    assert ease["INSERT-BOLSTER_L"]["notches_a"] == 3
-    assert all(row["matched"] for row in found["ease"])
-    assert run(["check", str(demo_scene), "--element-size-mm", "40"]) == 0
-    text = capsys.readouterr().out
-    assert "element_size_mm" in text
-    assert "ease_percent" in text
-
-
-@pytest.fixture
-def own_demo(demo_scene, tmp_path):
-    """Scene of a copy of the demo's files, without what commands left beside them."""
-    folder = tmp_path / "own"
-    folder.mkdir()
-    for file in demo_scene.parent.iterdir():
-        if file.suffix in (".toml", ".obj", ".dxf"):
-            (folder / file.name).write_bytes(file.read_bytes())
-    return folder / "scene.toml"
-
-
-@pytest.mark.render
-def test_check_draws_the_start_beside_the_scene(own_demo, capsys):
-    picture = own_demo.parent / "check" / "assembly.png"
-    assert run(["check", str(own_demo), "--json"]) == 0
-    said = capsys.readouterr()
-    found = json.loads(said.out)
-    assert found["drawing"] == str(picture)
-    assert str(picture) in said.err
-    assert sorted(int(row["number"]) for row in found["ease"]) == list(range(1, 15))
-    assert [row["number"] for row in found["held"]] == ["H1", "H2", "F1"]
-    assert found["held"][0]["pulled_to"] == "trench_left"
-    assert 30 < found["held"][0]["gap_mm"] < 50
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    assert [file.name for file in picture.parent.iterdir()] == ["assembly.png"]
-
-
-@pytest.mark.render
-def test_check_draws_what_it_refuses(own_demo, capsys):
-    seams = own_demo.with_name("seams.toml")
-    seams.write_text(seams.read_text().replace("reverse = true", "reverse = false", 1))
-    assert run(["check", str(own_demo)]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    first, *refused = said.err.splitlines()
-    assert first.endswith("assembly.png")
-    assert "whose ties cross" in refused[0]
-    assert (own_demo.parent / "check" / "assembly.png").exists()
-
-
-def test_check_passes_where_the_drawing_cannot_be_written(own_demo, capsys):
-    (own_demo.parent / "check").write_text("a file where the folder would be")
-    assert run(["check", str(own_demo), "--json"]) == 0
-    said = capsys.readouterr()
-    assert json.loads(said.out)["drawing"] is None
-    assert re.search(r"(?m)^not drawn: .*assembly\.png: got .*, expected a folder that", said.err)
-
-
-def test_check_passes_without_a_gl_library(own_demo):
-    done = subprocess.run(
-        [sys.executable, "-c", HIDDEN, "check", str(own_demo), "--json"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0
-    assert json.loads(done.stdout)["drawing"] is None
-    assert (
-        len([line for line in done.stderr.splitlines() if "not drawn: no GL library" in line]) == 1
-    )
-    assert "nothing wrong" in done.stderr
-    assert not (own_demo.parent / "check").exists()
 
 
 def test_stages_are_kept_and_gone_on_from(demo_scene, tmp_path, capsys):
@@ -353,120 +186,3 @@ def test_an_interrupted_command_ends_with_130_and_leaves_nothing_half_written(tm
     )
     assert before == ""
     assert [p for p in tmp_path.rglob(".*") if p.is_file()] == []
-
-
-@pytest.fixture(scope="module")
-def evaluated(demo_scene: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Evaluate the coarse demo once; one of its two limits cannot be kept."""
-    folder = tmp_path_factory.mktemp("evaluated")
-    shutil.copytree(demo_scene.parent, folder, dirs_exist_ok=True)
-    scene = folder / "scene.toml"
-    text = scene.read_text().replace('"driver_door", "top"]', '"top"]\nsize = [96, 54]')
-    text += '\n[accept."INSERT interior"]\nw2_mean = 1e-9\n[accept."REAR interior"]\nw2_mean = 50\n'
-    scene.write_text(
-        text.replace('["black-leather", "bright-leather", "suede"]', '["suede", "pvc"]')
-    )
-    done = seatlook("evaluate", "scene.toml", "--out", ".", "--no-score", "--preview", cwd=folder)
-    (folder / "stdout").write_text(done.stdout)
-    (folder / "stderr").write_text(f"{done.returncode}\n{done.stderr}")
-    return folder
-
-
-@pytest.mark.render
-def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
-    code, *foretold, gallery, first, second, status = (
-        (evaluated / "stderr").read_text().splitlines()
-    )
-    assert code == "1"
-    reasons = [line.removeprefix("will not be resolved: ") for line in foretold]
-    assert status == f"converged, not resolved: {'; '.join(reasons)}"
-    assert first.startswith("INSERT interior: w2_mean is ")
-    assert first.endswith(", not resolved, the limit is 1e-09")
-    # No limit is kept by a cover that its mesh does not resolve.
-    assert second.startswith("REAR interior: w2_mean is ")
-    assert second.endswith(", not resolved, the limit is 50")
-    assert "leather-laminate: elements of 20" in status
-    assert gallery == "gallery: index.html"
-    heads, *rows = (evaluated / "stdout").read_text().splitlines()
-    assert heads.split()[:3] == ["zone", "area_cm2", "w2_mean"]
-    assert any(row.startswith("INSERT interior") for row in rows)
-    assert len(list(evaluated.glob("images/*/*.png"))) == 6
-    # A map may lie there a second time, in a range of its own.
-    maps = {path.stem.removesuffix("-own") for path in evaluated.glob("maps/*.png")}
-    indices = set(INDICES)
-    texture = {"stretch_along", "stretch_across", "shear", "grain_drift", "checker"}
-    assert maps == indices | texture | {"gap", "deviation"}
-    page = (evaluated / "index.html").read_text()
-    for part in (
-        "suede under bulb left",
-        "W_compression",
-        "judgement",
-        "texture pvc",
-        "Gap",
-        "Shape against the foam",
-        "Shape against the design",
-        "Seam lines",
-        "ease [mm]",
-    ):
-        assert part in page
-    assert '<td class="missed">NO</td>' in page
-    assert "larger than an eighth" in page
-
-
-@pytest.mark.render
-def test_a_result_is_judged_and_drawn_again_without_solving(evaluated, tmp_path):
-    words = ["wrinkle", "result.npz", "--scene", "scene.toml", "--json", "--preview"]
-    exports = [tmp_path / "seat.vtp", tmp_path / "seat.csv"]
-    table = seatlook(*words, *(f"--export={path}" for path in exports), cwd=evaluated)
-    assert table.returncode == 0, table.stderr
-    assert all(path.stat().st_size > 1000 for path in exports)
-    wrong = seatlook(*words, "--export", "seat.xyz", cwd=evaluated)
-    assert wrong.returncode == 2
-    assert "seat.xyz: file: got '.xyz', expected one of .vtp, .csv, .glb" in wrong.stderr
-    zones = json.loads(table.stdout)["zones"]
-    first = (evaluated / "stdout").read_text()
-    assert len(zones) == len(first.splitlines()) - 1
-    assert f"{zones[-1]['w2_mean']:.4g}" in first
-
-    words = ["render", "scene.toml", "result.npz", "--out", str(tmp_path), "--rig", "sun"]
-    done = seatlook(*words, "--texture", "suede", "--no-maps", cwd=evaluated)
-    assert done.returncode == 0, done.stderr
-    (again,) = tmp_path.rglob("*.png")
-    assert again.read_bytes() == (evaluated / "images/sun/suede.png").read_bytes()
-
-
-@pytest.mark.render
-def test_shape_and_seam_lines_are_compared_with_the_design(evaluated, tmp_path):
-    with (evaluated / "seam-lines.csv").open() as file:
-        kept = {row["seam"]: row for row in csv.DictReader(file)}
-    assert len(kept) == 14
-    words = ["shape", "scene.toml", "result.npz", "--json"]
-    zones = seatlook(*words, "--out", str(tmp_path), cwd=evaluated)
-    assert zones.returncode == 0, zones.stderr
-    rows = {row["zone"]: row for row in json.loads(zones.stdout)}
-    assert rows["INSERT interior"]["measured_percent"] == pytest.approx(100)
-    for row in rows.values():
-        assert row["lowest_mm"] <= row["mean_mm"] <= row["highest_mm"]
-        assert row["p95_mm"] <= max(-row["lowest_mm"], row["highest_mm"]) + 1e-9
-    for name in ("shape.csv", "seam-lines.csv", "maps/deviation.png"):
-        assert (tmp_path / name).read_bytes() == (evaluated / name).read_bytes()
-    seams = json.loads(seatlook(*words, "--seams", cwd=evaluated).stdout)
-    for row in seams:
-        assert 0 < row["mean_mm"] < row["largest_mm"]
-        assert row["mean_mm"] == pytest.approx(float(kept[row["seam"]]["mean_mm"]))
-    text = (evaluated / "scene.toml").read_text()
-    bare_text = text.replace('[design]\nfile = "panels.obj"\nunit = "mm"', "[design]")
-    (evaluated / "bare.toml").write_text(bare_text)
-    bare = seatlook("shape", "bare.toml", "result.npz", cwd=evaluated)
-    assert bare.returncode == 2
-    assert "bare.toml: design: got nothing, expected a table [design] with a file" in bare.stderr
-
-
-@pytest.mark.render
-def test_render_refuses_a_rig_the_scene_does_not_have(evaluated, tmp_path):
-    out = tmp_path / "out"
-    words = ["render", "scene.toml", "result.npz", "--out", str(out), "--rig", "son"]
-    done = seatlook(*words, cwd=evaluated)
-    assert done.returncode == 2
-    assert "rig: got 'son', expected one of sun, bulb left, bulb right" in done.stderr
-    assert not out.exists()
