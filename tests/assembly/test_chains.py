@@ -16,6 +16,7 @@ from support.example_scene import EXAMPLE, write_example_files
 TURN = np.linspace(np.pi, 0.0, 181)
 SHOE = 0.2 * np.column_stack([np.cos(TURN), np.sin(TURN), 0.0 * TURN])  # right, rear, left
 LENGTH = mesh.length(SHOE)
+NONE = np.empty(0)  # no other wire crosses
 
 
 def part(low, high, *, lift=0.005):
@@ -122,7 +123,7 @@ def test_rings_of_a_closed_seam_stand_right_above_a_loop(begin, way):
     loop[-1] = loop[0]
     seam = on_loop(0.7, 0.7 + 2 * np.pi)
     (hook,) = hooks({"seam": seam}, {"loop": loop})
-    ring = rings_on([Line(np.arange(len(seam)), mesh.arc_length(seam))], hook, loop, seam)
+    ring = rings_on([Line(np.arange(len(seam)), mesh.arc_length(seam))], hook, loop, NONE, seam)
     np.testing.assert_allclose(ring.points.at(seam) - ring.target, [[0, 0, 0.005]] * len(ring.at),
                                atol=2e-3)  # fmt: skip
 
@@ -144,7 +145,7 @@ def chained(cuts, turned, junctions):
 def test_rings_of_a_chain_go_to_their_places_whichever_way_lines_run(turned, pitch):
     cuts = np.array([0.0, 0.25, 0.6, 1.0])
     lines, hook, x = chained(cuts, turned, tuple(cuts * LENGTH))
-    ring = rings_on(lines, dataclasses.replace(hook, pitch=pitch), SHOE, x)
+    ring = rings_on(lines, dataclasses.replace(hook, pitch=pitch), SHOE, NONE, x)
     np.testing.assert_allclose(ring.points.at(x) - ring.target, [[0, 0, 0.005]] * len(ring.at),
                                atol=1e-3)  # fmt: skip
     assert (np.diff(ring.at) > 1e-4).all()  # one ring at each junction
@@ -156,7 +157,7 @@ def test_rings_of_a_chain_go_to_their_places_whichever_way_lines_run(turned, pit
 def test_a_stretch_changes_gradually_at_junctions():
     cuts = np.array([0.0, 0.3, 0.6, 1.0])
     lines, hook, x = chained(cuts, (False,) * 3, (0.0, 0.31 * LENGTH, 0.6 * LENGTH, LENGTH))
-    ring = rings_on(lines, hook, SHOE, x)
+    ring = rings_on(lines, hook, SHOE, NONE, x)
     step = mesh.segment_lengths(ring.target) / np.diff(ring.at)
     assert np.abs(np.diff(step)).max() < 0.01  # 1.033 to 0.967, were it by pieces
 

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from seatlook.assembly import assemble
+from seatlook.assembly.lines import Line, crossings, rings_on
+from seatlook.model import Hook
 from seatlook.results.ring_pulls import overpulled, ring_pulls
 from seatlook.solver import solve
 from seatlook.solver.process.crossing import crossing_pairs, visible_crossings
@@ -55,6 +57,62 @@ def test_part_pulled_all_along_takes_its_vertices():
     np.testing.assert_allclose(whole.at, np.arange(6) * 0.02, atol=1e-12)
     np.testing.assert_allclose(part.at, [0.02, 0.04, 0.06], atol=1e-12)
     np.testing.assert_allclose(part.target, whole.target[1:4], atol=1e-12)
+
+
+def test_rings_may_slide_between_the_ends_of_their_wire():
+    assert anchor(pitch=0.05).wire is None
+    ring = anchor(pitch=0.05, slides=True)
+    np.testing.assert_allclose(ring.wire.place, [0.1, 0.05, 0.0], atol=1e-12)
+    np.testing.assert_allclose(ring.wire.stops, np.tile([0.0, 0.1], (3, 1)), atol=1e-12)
+
+
+ALONG = np.array([[0.0, 0.0, 0.0], [0.2, 0.0, 0.0]])
+
+
+@pytest.mark.parametrize(
+    ("others", "places"),
+    [
+        ([], []),
+        ([[[0.05, 0.0, 0.001], [0.05, 0.1, 0.0]]], [0.05]),  # ends on it
+        ([[[0.05, -0.1, 0.0], [0.07, 0.1, 0.0]]], [0.06]),  # crosses it
+        ([[[0.05, 0.003, 0.0], [0.05, 0.1, 0.0]]], []),  # ends 3 mm before it
+        (
+            [[[0.15, 0.0, 0.0], [0.15, 0.1, 0.0], [0.05, 0.1, 0.0], [0.05, 0.0, 0.0]]],
+            [0.05, 0.15],
+        ),
+        ([[[0.3, 0.0, 0.0], [0.3, 1.0, 0.0]]], []),  # beyond its end
+    ],
+)
+def test_wires_cross_where_they_meet(others, places):
+    got = crossings(ALONG, [np.array(other) for other in others])
+    np.testing.assert_allclose(got, places, atol=5e-4)
+
+
+def rings(curve, crossed):
+    """Rings every 25 mm along a line over a wire 200 mm long."""
+    x = np.column_stack([np.linspace(0.0, 0.2, 9), np.zeros((9, 2))])
+    hook = Hook(name="h", line="l", wire="w", stage="s", slides=True)
+    return rings_on([Line(np.arange(9), x[:, 0])], hook, curve, np.array(crossed), x).wire
+
+
+def test_rings_stop_at_a_crossing_from_either_side():
+    low, high = rings(ALONG, [0.1, 0.16]).stops.T
+    np.testing.assert_allclose(low, [0, 0, 0, 0, 0.099, 0.1, 0.1, 0.16, 0.16], atol=1e-12)
+    np.testing.assert_allclose(high, [0.1, 0.1, 0.1, 0.1, 0.101, 0.16, 0.16, 0.2, 0.2], atol=1e-12)
+
+
+def test_a_closed_wire_stops_rings_at_crossings_only():
+    turn = np.linspace(0.0, 2 * np.pi, 201)
+    circle = 0.1 / np.pi * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(201)])
+    circle[-1] = circle[0]
+    assert np.isinf(rings(circle, []).stops).all()
+    low, high = rings(circle, [0.07]).stops.T
+    length = np.linalg.norm(np.diff(circle, axis=0), axis=1).sum()
+    place = rings(circle, [0.07]).place
+    assert (low < place).all()
+    assert (place < high).all()
+    np.testing.assert_allclose(high - low, length)
+    np.testing.assert_allclose(high, np.where(place < 0.07, 0.07, 0.07 + length))
 
 
 @pytest.fixture(scope="module")

@@ -84,7 +84,7 @@ def test_options_reach_the_figures(capsys):
         ([STRIP, "--facing", "0", "0", "0"], "--facing: got 0 0 0, expected a direction"),
         ([STRIP, "--against", "x.npz"], "--against: got"),
         ([STRIP, "--length-unit", "m"], "nodes: got an extent of 100 m"),
-        ([STRIP, "--export", "c.step"], "expected one of .vtp, .csv, .glb, .k, .npz"),
+        ([STRIP, "--export", "c.step"], "expected one of .vtp, .csv, .glb, .k, .radioss.k, .npz"),
         (["no.npz"], "no.npz"),
         (["no"], "no: file: got no such file, expected a d3plot or a keyword deck"),
         (

@@ -43,3 +43,31 @@ def test_arc_length_is_defined_once():
         for path in root.rglob("*.py")
     }
     assert {name: count for name, count in places.items() if count} == {"mesh/polyline.py": 1}
+
+
+def test_points_at_places_are_the_corners_and_lie_between_them():
+    places = np.array([0.0, 2.5, 5.0, 5.5, 10.0])
+    expected = [[0, 0], [1.5, 2], [3, 4], [3, 4.5], [7, 5]]
+    np.testing.assert_allclose(mesh.points_at(STAIRS, places), expected)
+
+
+def test_directions_turn_evenly_from_middle_to_middle():
+    middle = mesh.directions_at(STAIRS, np.array([-1.0, 0.0, 2.5, 5.5, 8.0, 10.0]))
+    along = [[0.6, 0.8], [0.6, 0.8], [0.6, 0.8], [0.0, 1.0], [1.0, 0.0], [1.0, 0.0]]
+    np.testing.assert_allclose(middle, along)
+    between = mesh.directions_at(STAIRS, np.array([4.0]))
+    np.testing.assert_allclose(between, [[0.3, 0.9] / np.hypot(0.3, 0.9)])
+    fine = mesh.directions_at(STAIRS, np.linspace(0.0, 10.0, 10_001))
+    assert np.abs(np.diff(fine, axis=0)).max() < 1e-3  # no jump
+    np.testing.assert_allclose(np.linalg.norm(fine, axis=1), 1.0)
+
+
+def test_a_closed_line_has_no_ends():
+    square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]])
+    assert mesh.is_closed(square)
+    assert not mesh.is_closed(square[:-1])
+    places = np.array([-1.0, 0.5, 7.0])
+    np.testing.assert_allclose(mesh.points_at(square, places + 8.0), mesh.points_at(square, places))
+    np.testing.assert_allclose(
+        mesh.directions_at(square, np.array([0.0, 8.0])), np.tile([1, -1] / np.sqrt(2), (2, 1))
+    )

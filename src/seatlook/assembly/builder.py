@@ -16,6 +16,7 @@ from seatlook.assembly.ease import seam_ease
 from seatlook.assembly.lines import (
     Line,
     anchor_on,
+    crossings,
     join,
     line_through,
     rings_on,
@@ -172,7 +173,10 @@ class Builder:
         lines = [
             self.edge(near[name]) if name in near else self._lines[name] for name in hook.lines
         ]
-        return rings_on(lines, hook, scene.foam.curves[hook.wire], x)
+        curve = scene.foam.curves[hook.wire]
+        others = {other.wire for other in scene.hooks} - {hook.wire}
+        crossed = crossings(curve, [scene.foam.curves[name] for name in others])
+        return rings_on(lines, hook, curve, crossed, x)
 
     def frame(self, frame: Frame, scene: Scene, x: FloatArray) -> Anchor:
         """Pull free edges to a curve below the foam."""

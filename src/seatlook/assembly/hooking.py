@@ -66,7 +66,8 @@ def hooks_beside(
     tuple of Hook
         In the order of the wires. A chain that has a gap along the wire makes two hooks. Their
         junctions lie on the wire half way between the nearest places of two lines' ends. Those on a
-        closed wire go on past its end: it may begin anywhere beside its lines.
+        closed wire go on past its end: it may begin anywhere beside its lines. All slide if one is
+        a chain: beside its junctions rings that are held would pull along the wire.
 
     Notes
     -----
@@ -91,7 +92,8 @@ def hooks_beside(
         for chain, word in zip(chains, words, strict=True):
             name = f"{wire}.{word}" if word else wire
             hooks.append(_hook(name, wire, chain, wires[wire], stage))
-    return tuple(hooks)
+    slides = any(hook.chain for hook in hooks)
+    return tuple(replace(hook, slides=slides) for hook in hooks)
 
 
 def _round(wire: FloatArray) -> float | None:

@@ -9,9 +9,11 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from seatlook import mesh
-from seatlook.model import Anchor, FloatArray, Frame, Hook, IntArray, Points
+from seatlook.model import Anchor, FloatArray, Frame, Hook, IntArray, Points, Wire
 
 _ON_LINE = 1e-6  # m; a vertex that near an end of the hooked part belongs to it
+_MEETS = 2e-3  # m; wires that come so near to each other meet
+_AT_CROSSING = 1e-3  # m to either side of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,15 +89,16 @@ class Course:
     smooth: bool = False
 
     def targets(self, at: FloatArray) -> FloatArray:
-        """Places (s, 3) [m] of points at lengths ``at`` (s,) along the chain."""
-        arc = mesh.arc_length(self.curve)
+        """Points (s, 3) [m] of the curve for lengths ``at`` (s,) along the chain."""
+        return mesh.points_at(self.curve, self.places(at))
+
+    def places(self, at: FloatArray) -> FloatArray:
+        """Places (s,) [m] along the curve of points at lengths ``at`` (s,) along the chain."""
         place = np.interp(at, self.before, self.stops)
         if self.smooth:  # or the rings beside a junction would pull along the wire
             inside = np.clip(at, self.before[0], self.before[-1])
             place = PchipInterpolator(self.before, self.stops)(inside)
-        if mesh.is_closed(self.curve):
-            place = np.where(place > arc[-1], place - arc[-1], place)
-        return np.column_stack([np.interp(place, arc, column) for column in self.curve.T])
+        return np.asarray(place)
 
     def turned(self) -> Course:
         """The same piece of the curve, run through from its other end."""
@@ -144,13 +147,16 @@ def anchor_on(lines: Sequence[Line], frame: Frame, curve: FloatArray, x: FloatAr
     )
 
 
-def rings_on(lines: Sequence[Line], hook: Hook, wire: FloatArray, x: FloatArray) -> Anchor:
+def rings_on(
+    lines: Sequence[Line], hook: Hook, wire: FloatArray, crossed: FloatArray, x: FloatArray
+) -> Anchor:
     """Pull a chain of lines to its wire: their vertices, or hog rings at the hook's pitch.
 
     A point at a length along the chain goes to its place on the wire, whatever part of the chain is
     pulled. Rings stand at both ends of that part, at the junctions, and at equal steps between
     them, as near to the pitch as that allows, but not closer than the lines' vertices. Each line
-    runs the way in which its places start nearer to the wire, and so does the wire.
+    runs the way in which its places start nearer to the wire, and so does the wire. Where they
+    slide along it later, they do not pass places (c,) where it is ``crossed``.
     """
     way = course(lines, wire, hook.junctions, (hook.start, hook.end))
     way = replace(way, smooth=len(lines) > 1)
@@ -173,7 +179,34 @@ def rings_on(lines: Sequence[Line], hook: Hook, wire: FloatArray, x: FloatArray)
         stage=hook.stage,
         at=along,
         limit=hook.limit,
+        wire=_on_wire(way, along, crossed) if hook.slides else None,
     )
+
+
+def crossings(wire: FloatArray, others: Sequence[FloatArray]) -> FloatArray:
+    """Places [m] along a wire, rising, where another one meets or crosses it."""
+    places = []
+    for other in others:
+        away, place = mesh.nearest_places(wire, mesh.resample(other, _AT_CROSSING))
+        beside = np.concatenate([[np.inf], away, [np.inf]])
+        least = (away <= _MEETS) & (away <= beside[:-2]) & (away < beside[2:])
+        places += place[least].tolist()
+    return np.sort(places)
+
+
+def _on_wire(way: Course, at: FloatArray, crossed: FloatArray) -> Wire:
+    """Where rings at lengths ``at`` are put on a wire, and the stops to either side of them."""
+    low, high = (-np.inf, np.inf) if mesh.is_closed(way.curve) else (0.0, mesh.length(way.curve))
+    turn = mesh.length(way.curve) if np.isinf(high) else 0.0
+    place = np.clip(way.places(at), low, high)
+    knots = np.unique([low, *crossed - turn, *crossed, *crossed + turn, high])
+    k = np.searchsorted(knots[1:-1], place, side="right")
+    stops = np.column_stack([knots[k], knots[k + 1]])
+    for crossing in crossed:  # what sits on it belongs to neither side
+        stops[np.abs(place - crossing) <= _AT_CROSSING] = np.clip(
+            [crossing - _AT_CROSSING, crossing + _AT_CROSSING], low, high
+        )
+    return Wire(curve=way.curve, place=place, stops=stops)
 
 
 def _parts(lines: Sequence[Line], hook: Hook) -> Iterator[tuple[Line, float, FloatArray]]:

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
         arc_length as arc_length,
     )
     from seatlook.mesh.polyline import (
+        directions_at as directions_at,
+    )
+    from seatlook.mesh.polyline import (
         is_closed as is_closed,
     )
     from seatlook.mesh.polyline import (
@@ -36,6 +39,9 @@ if TYPE_CHECKING:
     )
     from seatlook.mesh.polyline import (
         nearest_places as nearest_places,
+    )
+    from seatlook.mesh.polyline import (
+        points_at as points_at,
     )
     from seatlook.mesh.polyline import (
         resample as resample,
@@ -86,6 +92,7 @@ _PUBLIC: dict[str, str] = {
     "arc_length": "seatlook.mesh.polyline",
     "boundary_loops": "seatlook.mesh.surface",
     "boundary_sides": "seatlook.mesh.surface",
+    "directions_at": "seatlook.mesh.polyline",
     "edge_lengths": "seatlook.mesh.surface",
     "edges": "seatlook.mesh.surface",
     "face_areas": "seatlook.mesh.surface",
@@ -98,6 +105,7 @@ _PUBLIC: dict[str, str] = {
     "length": "seatlook.mesh.polyline",
     "nearest_place": "seatlook.mesh.polyline",
     "nearest_places": "seatlook.mesh.polyline",
+    "points_at": "seatlook.mesh.polyline",
     "resample": "seatlook.mesh.polyline",
     "segment_lengths": "seatlook.mesh.polyline",
     "triangulate": "seatlook.mesh.outline",
@@ -112,6 +120,7 @@ __all__ = [
     "arc_length",
     "boundary_loops",
     "boundary_sides",
+    "directions_at",
     "edge_lengths",
     "edges",
     "face_areas",
@@ -124,6 +133,7 @@ __all__ = [
     "length",
     "nearest_place",
     "nearest_places",
+    "points_at",
     "resample",
     "segment_lengths",
     "triangulate",

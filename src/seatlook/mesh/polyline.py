@@ -104,3 +104,43 @@ def resample(polyline: FloatArray, spacing: float) -> FloatArray:
     points = np.column_stack([np.interp(at, s, column) for column in polyline.T])
     points[[0, -1]] = polyline[[0, -1]]  # bit for bit, so that neighbours share their corners
     return points
+
+
+def points_at(line: FloatArray, places: FloatArray) -> FloatArray:
+    """Return the points (s, d) at lengths ``places`` (s,) [m] along a polyline (k, d).
+
+    A closed polyline, whose first point is its last, goes on beyond its ends.
+
+    Examples
+    --------
+    >>> points_at(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), np.array([0.5, 1.5]))
+    array([[0.5, 0. ],
+           [1. , 0.5]])
+    """
+    arc = arc_length(line)
+    at = places % arc[-1] if is_closed(line) else places
+    return np.column_stack([np.interp(at, arc, column) for column in line.T])
+
+
+def directions_at(line: FloatArray, places: FloatArray) -> FloatArray:
+    """Return the unit directions (s, d) at lengths ``places`` (s,) [m] along a polyline (k, d).
+
+    In the middle of a segment it is the segment's; from there it turns evenly to the next middle,
+    as on the smooth curve that the polyline stands for.
+
+    Examples
+    --------
+    >>> directions_at(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), np.array([0.2, 1.5]))
+    array([[1., 0.],
+           [0., 1.]])
+    """
+    arc, steps = arc_length(line), segment_lengths(line)
+    unit = np.diff(line, axis=0)[steps > 0] / steps[steps > 0, None]
+    middle = (arc[:-1] + arc[1:])[steps > 0] / 2
+    at = places
+    if is_closed(line):
+        at = places % arc[-1]
+        unit = np.concatenate([unit[-1:], unit, unit[:1]])
+        middle = np.concatenate([middle[-1:] - arc[-1], middle, middle[:1] + arc[-1]])
+    direction = np.column_stack([np.interp(at, middle, column) for column in unit.T])
+    return np.asarray(direction / np.linalg.norm(direction, axis=1, keepdims=True))

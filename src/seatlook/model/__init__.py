@@ -12,6 +12,7 @@ from seatlook.model.cover import (
     WrinkleMap,
 )
 from seatlook.model.criteria import Criteria, CurvatureMode, StrainMeasure, criteria_of
+from seatlook.model.fastenings import Thread, Wire
 from seatlook.model.light import (
     LIGHTS,
     VIEWS,
@@ -33,7 +34,6 @@ from seatlook.model.shells import ShellResult, Shells, ShellState
 from seatlook.model.stage import Stage, stage_units
 from seatlook.model.table import Field
 from seatlook.model.texture import TextureMaps
-from seatlook.model.thread import Thread
 
 __all__ = [
     "LIGHTS",
@@ -79,6 +79,7 @@ __all__ = [
     "TextureMaps",
     "Thread",
     "Verdict",
+    "Wire",
     "WrinkleMap",
     "ZoneBox",
     "booth",

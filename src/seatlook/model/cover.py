@@ -19,9 +19,9 @@ from seatlook.model._check import (
     ints,
 )
 from seatlook.model.criteria import Criteria
+from seatlook.model.fastenings import Thread, Wire
 from seatlook.model.material import Foam, Material
 from seatlook.model.stage import Stage
-from seatlook.model.thread import Thread
 
 Status = Literal["converged", "not converged"]
 
@@ -84,6 +84,7 @@ class Anchor:
     points : Points; target : (s, 3) float64 [m]; length : (s,) float64 [m]
     at : (s,) float64 [m], optional   place of every point along the line that is pulled
     limit : float [N], optional       largest pull on one point that is allowed
+    wire : Wire, optional             along which the points slide once they are drawn in
     """
 
     name: str
@@ -94,12 +95,19 @@ class Anchor:
     stage: str
     at: FloatArray | None = None
     limit: float | None = None
+    wire: Wire | None = None
 
     def __post_init__(self) -> None:
         floats(self, "target", len(self.points), 3, most=FARTHEST)
         floats(self, "length", len(self.points))
         if self.at is not None:
             floats(self, "at", len(self.points))
+        if self.wire is not None and len(self.wire.place) != len(self.points):
+            raise InputError.single(
+                f"{self.kind} {self.name}.wire",
+                got=f"{len(self.wire.place)} places",
+                expected=f"one for each of {len(self.points)} points",
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,11 +13,11 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.model._check import FARTHEST, FloatArray, IntArray, floats, ints, positive
 from seatlook.model.criteria import CurvatureMode
+from seatlook.model.fastenings import Thread
 from seatlook.model.light import Camera, Rig
 from seatlook.model.material import Appearance, Foam, Material
 from seatlook.model.pattern import Pattern
 from seatlook.model.stage import Stage
-from seatlook.model.thread import Thread
 
 # What [accept] can limit besides the figures of a zone: its worst score over textures and rigs.
 SCORE_MEASURES = ("vwi", "equivalent_height_mm")
@@ -73,6 +73,7 @@ class Hook:
     pitch : float [m], optional     distance of hog rings; without it, pulled all along
     start, end : float [m]          part of the whole length that is pulled; ``end`` None is all
     limit : float [N], optional     largest pull allowed on one ring
+    slides : the rings slide along the wire, and pull across it only; else they hold their places
     """
 
     name: str
@@ -85,6 +86,7 @@ class Hook:
     start: float = 0.0
     end: float | None = None
     limit: float | None = None
+    slides: bool = False
 
     @property
     def lines(self) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from seatlook import mesh
 from seatlook.model import Solution
 
 
@@ -66,7 +67,10 @@ def _rings(solution: Solution) -> Iterator[RingPull]:
         if anchor.kind != "hook" or force is None or anchor.at is None:
             continue
         points = anchor.points.at(solution.positions)
-        gap = np.linalg.norm(points - anchor.target, axis=1)
+        target, wire = anchor.target, anchor.wire
+        if wire is not None:
+            target = mesh.points_at(wire.curve, wire.nearest(points))
+        gap = np.linalg.norm(points - target, axis=1)
         for k, (x, y, z) in enumerate(points.tolist()):
             yield RingPull(
                 hook=anchor.name,

@@ -126,7 +126,7 @@ def settings_of(settings: SolverSettings = DEFAULT) -> str:
     Examples
     --------
     >>> settings_of(SolverSettings(dt=0.01))
-    'revision 2, auto, dt 0.01 s, 8 iterations'
+    'revision 3, auto, dt 0.01 s, 8 iterations'
     """
     steps = f"dt {settings.dt:g} s, {settings.iterations} iterations"
     return f"revision {REVISION}, {settings.method}, {steps}"

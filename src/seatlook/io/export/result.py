@@ -39,6 +39,7 @@ from seatlook.model import (
     Stitching,
     TextureMaps,
     Thread,
+    Wire,
 )
 
 FORMAT = "seatlook result"
@@ -49,7 +50,7 @@ _TYPES: dict[str, type] = {
     t.__name__: t
     for t in (
         Anchor, Appearance, Cover, Criteria, Curve, Fabric, Foam, FoamMaterial, Hem, Material,
-        Points, Solution, Stage, Stitching, TextureMaps, Thread,
+        Points, Solution, Stage, Stitching, TextureMaps, Thread, Wire,
     )
 }  # fmt: skip
 

@@ -126,6 +126,7 @@ KEYS: dict[str, Kind] = {
                 "from_mm": Number(low=0, high=FAR_MM, scale=MM, default=0.0),
                 "to_mm": Number(above=0, high=FAR_MM, scale=MM),
                 "limit_n": Number(low=1e-3, high=1e6),
+                "slides": Flag(default=False),
             }
         )
     ),

@@ -86,6 +86,7 @@ def make_hooks(
                 start=hook["from_mm"] or 0.0,
                 end=hook["to_mm"],
                 limit=hook["limit_n"],
+                slides=hook["slides"],
             )
         )
     return tuple(hooks)

@@ -127,3 +127,33 @@ class SplitFactor:
         across = self._across.column(pressing)
         across -= np.einsum("ij,ij->i", out, normal)
         out += across[:, None] * normal
+
+
+class SlidingFactor:
+    """A preconditioner, and another one for movement along given directions that is let free.
+
+    The sum of both serves either kind of movement to a factor of two (an additive Schwarz method
+    of two subspaces).
+
+    Parameters
+    ----------
+    held : preconditioner of (n, 3) forces in which nothing slides
+    free : (n, n) scalar stiffness [N/m] of the same where what slides is let free
+    vertices : (m,) int64       that may move so, the others stay
+    along : (m, 3) float64      unit directions in which they move
+    """
+
+    def __init__(
+        self, held: Preconditioner, free: csc_array, vertices: IntArray, along: FloatArray
+    ) -> None:
+        entries = free[vertices][:, vertices].tocoo()
+        row, column = entries.coords
+        entries.data *= np.einsum("ij,ij->i", along[row], along[column])
+        self._held, self._free = held, Factor(csc_array(entries))
+        self._vertices, self._along = vertices, along
+
+    def solve(self, right: FloatArray, out: FloatArray) -> None:
+        """Solve for (n, 3) right-hand sides."""
+        self._held.solve(right, out)
+        along = self._free.column(np.einsum("ij,ij->i", right[self._vertices], self._along))
+        out[self._vertices] += along[:, None] * self._along

@@ -15,6 +15,7 @@ from seatlook.model import FloatArray, IntArray
 from seatlook.solver.element.elastic import ElasticSheet
 from seatlook.solver.kernels import nearest as kernel
 from seatlook.solver.methods.multifrontal import Cholesky, Pattern
+from seatlook.solver.process.sliding import Released
 
 _HINGE = 1.5  # times B l^2 / A, nearest to the element's bending
 _FLOOR = 1e-10  # of the mean diagonal: holds what nothing else does
@@ -49,8 +50,18 @@ class NearestHessian:
         self._blocks = np.empty((len(rows), 3, 3))
         self._cholesky = Cholesky(Pattern(rows, columns, len(points), size=3))
 
-    def factor(self, x: FloatArray, scalar: csc_array, diagonal: FloatArray) -> None:
-        """Factor at ``x``, with more scalar terms (n, n) and diagonal blocks (n, 3, 3) added."""
+    def factor(
+        self,
+        x: FloatArray,
+        scalar: csc_array,
+        diagonal: FloatArray,
+        released: Released | None = None,
+    ) -> None:
+        """Factor at ``x``.
+
+        Scalar terms (n, n) and diagonal blocks (n, 3, 3) are added; what of the scalar terms is
+        released along wires is taken away.
+        """
         sheet, blocks = self._sheet, self._blocks
         material, pull = sheet.membrane.tangent(x, definite=True)
         entries = self._constant.copy()
@@ -59,6 +70,8 @@ class NearestHessian:
         for axis in range(3):
             blocks[:, axis, axis] = entries
         blocks[self._diagonal] += diagonal
+        if released is not None:
+            self._release(released, blocks)
         edges = sheet.edges
         kernel.chords(
             x,
@@ -91,6 +104,15 @@ class NearestHessian:
         if (self._keys[at] != key).any():
             raise SolverError("stiffness outside the pattern that was given")
         np.add.at(entries, at, listed.data[lower])
+
+    def _release(self, released: Released, blocks: FloatArray) -> None:
+        """Take the springs away that rings do not have along their wires."""
+        shape = released.weights.shape[0], 2, 2
+        row = np.broadcast_to(released.vertices[:, :, None], shape)
+        column = np.broadcast_to(released.vertices[:, None, :], shape)
+        slot = self._slot(row, column)
+        there = (slot >= 0) & (released.weights[:, :, None] * released.weights[:, None, :] != 0.0)
+        np.subtract.at(blocks, slot[there], released.blocks()[there])
 
     def _slot(self, rows: IntArray, columns: IntArray) -> IntArray:
         """Where the blocks of pairs of vertices are; -1 above the diagonal."""

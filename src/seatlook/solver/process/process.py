@@ -20,7 +20,13 @@ from seatlook.solver.foam.foundation import Foundation
 from seatlook.solver.kernels.lbfgs import largest_row
 from seatlook.solver.methods.choice import Method, method_of, minimiser
 from seatlook.solver.methods.explicit import Explicit, Integrator
-from seatlook.solver.methods.factor import Factor, Preconditioner, Renewed, SplitFactor
+from seatlook.solver.methods.factor import (
+    Factor,
+    Preconditioner,
+    Renewed,
+    SlidingFactor,
+    SplitFactor,
+)
 from seatlook.solver.methods.lbfgs import Potential
 from seatlook.solver.methods.stability import downhill
 from seatlook.solver.process.nearest import NearestHessian
@@ -153,13 +159,14 @@ class Process:
         np.multiply(self.v, _CARRIED_VELOCITY * self.dt, out=self.inertia.free)
         self.inertia.free += self.x
         if refactor or self._factor is None:
-            self._factor = self._preconditioner(lambda: Factor(self._matrix()))
+            self._factor = self._preconditioner(Factor)
         limit = _STEP_TOLERANCE * self._force_scale()
         return self._descend(self._factor, limit, self.iterations)
 
     def begin(self, *, rest: bool = False) -> None:
         """Begin a stage, or the way to rest with all ties closed."""
         self._factor, self._integrator = None, None
+        self.ties.sliding.forget()
         if self.foundation is not None:
             self.foundation.begin(self.state)
         if rest:
@@ -286,24 +293,31 @@ class Process:
 
     def _lag(self) -> None:
         self.sheet.membrane.wear(self.x)
+        self.ties.lag(self.x)
         if self.foundation is not None:
             self.foundation.lag(self.state)
 
-    def _preconditioner(self, sheet: Callable[[], Preconditioner]) -> Preconditioner | None:
+    def _preconditioner(self, make: Callable[[csc_array], Preconditioner]) -> Preconditioner | None:
         """Matrix for a method that uses one, of the positions and what lies below."""
         if self._nearest is not None:
             return Renewed(partial(self._projected, self._nearest))
         if isinstance(self.method, Explicit):
             return None
-        return sheet() if self.foundation is None else self.foundation.extend(sheet())
+        matrix = self._matrix()
+        factor = make(matrix)
+        if self.ties.sliding.rings:
+            free = matrix - self.ties.released(self.x).scalar(len(self.x))
+            factor = SlidingFactor(factor, csc_array(free), *self.ties.sliding.along(self.x))
+        return factor if self.foundation is None else self.foundation.extend(factor)
 
     def _projected(self, nearest: NearestHessian) -> Preconditioner:
         """Factor of the projected Hessian at the state at hand."""
         scalar = csc_array(self.ties.stiffness() + self.inertia.stiffness())
+        released = self.ties.released(self.x)
         if self.foundation is None:
-            nearest.factor(self.x, scalar, np.zeros((len(self.x), 3, 3)))
+            nearest.factor(self.x, scalar, np.zeros((len(self.x), 3, 3)), released)
             return nearest
-        nearest.factor(self.x, scalar, self.foundation.blocks(self.state))
+        nearest.factor(self.x, scalar, self.foundation.blocks(self.state), released)
         self.foundation.contact.update(self.state)
         return self.foundation.extend(nearest)
 
@@ -336,8 +350,8 @@ class Process:
         sheet = self.sheet.stiffness(self._bending_in_factor)
         return csc_array(sheet + self._outer.stiffness() + self.inertia.stiffness())
 
-    def _split(self) -> SplitFactor:
-        """Factor of `_matrix` along the sheet, of its resistance to waves across it.
+    def _split(self, matrix: csc_array) -> SplitFactor:
+        """Factor of ``matrix`` along the sheet, of its resistance to waves across it.
 
         Across, the sheet answers by bending, tension, curvature (k^2 E h as in a shell) and foam.
         """
@@ -352,7 +366,7 @@ class Process:
         if self.foundation is not None:
             diagonal += self.foundation.contact.stiffness().diagonal()
         across = self.sheet.across() + self._taut * self.sheet.stiffness() + diags_array(diagonal)
-        return SplitFactor(self._matrix(), csc_array(across), normal)
+        return SplitFactor(matrix, csc_array(across), normal)
 
 
 def _tension(fabrics: Sequence[Fabric]) -> FloatArray:

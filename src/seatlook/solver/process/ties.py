@@ -11,11 +11,13 @@ from scipy.sparse import csc_array, csr_array, diags_array, identity, kron
 
 from seatlook.model import Anchor, Cover, FloatArray, IntArray, Stitching
 from seatlook.solver.kernels import ties as kernel
+from seatlook.solver.process.sliding import Released, Rings, Sliding
 
 Kind = Literal["seam", "hook", "frame"]
 _STIFFER = 100.0  # than a strip of fabric one element long: a softer tie lets a buckled edge flip
 _SMALL_GAP = 5e-5  # m, that needs no multiplier
 # A tie closes by pulling ever harder; only when closed does it reach its full stiffness.
+_SLIDES = 0.8  # of its stage, from which on a ring slides: the cover still settles anyway
 _PROGRESS, _SHARE = (0.0, 1.0, 1.4), (1e-5, 1e-2, 1.0)
 
 
@@ -32,6 +34,9 @@ class Tie:
 class Ties:
     """Zero-length springs with an augmented Lagrangian.
 
+    Rings of a hook are drawn in to their places on the wire, and slide along it when they are all
+    but there: from then on their springs act across the wire, and along it only at a stop.
+
     Parameters
     ----------
     cover : its stitchings and anchors
@@ -41,6 +46,7 @@ class Ties:
     def __init__(self, cover: Cover, stiffness: FloatArray) -> None:
         self.ties: list[Tie] = []
         vertices, weights, target, length = [], [], [], []
+        self._rings: dict[str, Rings] = {}
         count = 0
         parts: list[Stitching | Anchor] = [*cover.stitchings, *cover.anchors]
         for part in parts:
@@ -48,6 +54,8 @@ class Ties:
             v, w, t = _rows(part)
             kind: Kind = "seam" if isinstance(part, Stitching) else part.kind
             self.ties.append(Tie(part.name, kind, part.stage, rows))
+            if isinstance(part, Anchor) and part.wire is not None:
+                self._rings[part.name] = Rings(part.points, part.wire, rows)
             vertices.append(v)
             weights.append(w)
             target.append(t)
@@ -61,17 +69,29 @@ class Ties:
         self.stiff = np.zeros(count)
         self.target = self.goal.copy()
         self.multiplier = np.zeros((count, 3))
-        self._gap = np.zeros((count, 3))
+        self.sliding = Sliding(count)
+        self._gap, self._force = np.zeros((count, 3)), np.zeros((count, 3))
         self._weights = csr_array(
             (self.weights.ravel(), self.vertices.ravel(), 4 * np.arange(count + 1)),
             shape=(count, len(stiffness)),
+            copy=True,  # its rows are sorted, which those of ``vertices`` must not be
         )
+        self._weights.sum_duplicates()
 
     def value(self, x: FloatArray, gradient: FloatArray) -> float:
         """Return the energy [J] and add its gradient [N]."""
         return float(
             kernel.tie_value(
-                x, self.vertices, self.weights, self.target, self.stiff, self.multiplier, gradient
+                x,
+                self.vertices,
+                self.weights,
+                self.target,
+                self.stiff,
+                self.multiplier,
+                self.sliding.direction,
+                self.sliding.play,
+                self._force,
+                gradient,
             )
         )
 
@@ -86,6 +106,9 @@ class Ties:
         The gap there is shrinks by the share of the way that the step covers, and the springs
         stiffen from weak to full: points travel evenly and around what lies in the way.
         """
+        drawn = [t.name for t in self.ties if before[t.stage] >= _SLIDES]
+        self.sliding.begin([self._rings[name] for name in drawn if name in self._rings])
+        self.sliding.seat(x, self.goal)
         gap = self.gap(x)
         for tie in self.ties:
             s0, s1 = before[tie.stage], after[tie.stage]
@@ -94,9 +117,16 @@ class Ties:
             self.target[tie.rows] = self.goal[tie.rows] + share * gap[tie.rows]
 
     def close(self) -> None:
-        """Give all ties their full stiffness and final targets."""
+        """Give all ties their full stiffness and final targets, and let all rings slide."""
         np.copyto(self.stiff, self.full)
         np.copyto(self.target, self.goal)
+        self.sliding.begin([*self._rings.values()])
+
+    def lag(self, x: FloatArray) -> None:
+        """Seat rings that slide anew; until the next time they slide along a straight line."""
+        left = self.target - self.goal
+        self.sliding.seat(x, self.goal)
+        np.add(self.goal, left, out=self.target)
 
     def points(self, kind: Kind) -> csc_array:
         """Weights (s, n) of the vertices in the gaps of a kind."""
@@ -133,12 +163,12 @@ class Ties:
         """
         gap = self.gap(x)
         closed = (self.target == self.goal).all(axis=1) & (np.abs(gap).max(axis=1) > _SMALL_GAP)
-        self.multiplier += np.where(closed, self.stiff, 0.0)[:, None] * gap
+        self.multiplier[closed] = -self.force(x)[closed]
 
     def force(self, x: FloatArray) -> FloatArray:
         """Pull of every row on its first side, (s, 3) [N]: minus spring and multiplier."""
-        kernel.tie_gap(x, self.vertices, self.weights, self.target, self._gap)
-        return np.asarray(-(self.multiplier + self.stiff[:, None] * self._gap))
+        self.value(x, np.zeros_like(x))
+        return -self._force
 
     def forces(self, x: FloatArray) -> dict[str, FloatArray]:
         """Pull of every tie, (s, 3) [N], by its name."""
@@ -146,9 +176,24 @@ class Ties:
         return {tie.name: force[tie.rows].copy() for tie in self.ties}
 
     def stiffness(self) -> csc_array:
-        """Scalar stiffness of all springs that pull."""
+        """Scalar stiffness of all springs that pull, as if no ring slid."""
         w = self._weights
         return csc_array(w.T @ (diags_array(self.stiff) @ w))
+
+    def released(self, x: FloatArray) -> Released:
+        """Stiffness along the wires, which rings do not have while they slide and meet no stop."""
+        low, high = self.sliding.play.T
+        kernel.tie_gap(x, self.vertices, self.weights, self.target, self._gap)
+        along = np.einsum("ij,ij->i", self.multiplier, self.sliding.direction)
+        along /= np.where(self.stiff > 0.0, self.stiff, 1.0)
+        along += np.einsum("ij,ij->i", self._gap, self.sliding.direction)
+        free = (low < high) & (low <= along) & (along <= high)
+        return Released(
+            self.vertices[free, :2],
+            self.weights[free, :2],
+            self.stiff[free],
+            self.sliding.direction[free],
+        )
 
     def pattern(self) -> csc_array:
         """Not zero where springs may couple two vertices, (n, n)."""
@@ -156,9 +201,10 @@ class Ties:
         return csc_array(w.T @ w)
 
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
-        """Second derivative [N/m], constant and never indefinite."""
-        del x, definite
-        return csc_array(kron(self.stiffness(), identity(3), format="csc"))
+        """Second derivative [N/m], never indefinite; constant but for rings that meet a stop."""
+        del definite
+        held = kron(self.stiffness(), identity(3), format="csc")
+        return csc_array(held - self.released(x).matrix(self._weights.shape[1]))
 
 
 def _ramp(progress: float) -> float:
