@@ -166,34 +166,35 @@ def test_strip_returns_along_its_unloading_curve(axis):
         assert force == pytest.approx(float(expected), rel=5e-3)
 
 
-def test_cover_remembers_over_a_restart():
-    """A strip held at 5 %, then at 3.5 % by a second solution that starts from the first."""
+def held(strain):
+    """A strip drawn to this strain by frames at its two ends."""
     stage = model.Stage(name="drop", start=0.0, end=0.2)
     X, T, x = sheet(0.2, 0.04, 0.02)
-
-    def held(strain):
-        half = 0.1 * np.sqrt(1 + 2 * strain)
-        ends = []
-        for sign, at in ((-1, 0.0), (1, 0.2)):
-            end = row(X, 0, at)
-            target = np.column_stack([np.full(len(end), 0.1 + sign * half), x[end, 1:]])
-            ends.append(
-                model.Anchor(
-                    name=f"end {sign}",
-                    kind="frame",
-                    points=vertices_as_points(end),
-                    target=target,
-                    length=np.full(len(end), 0.02),
-                    stage="drop",
-                )
+    half = 0.1 * np.sqrt(1 + 2 * strain)
+    ends = []
+    for sign, at in ((-1, 0.0), (1, 0.2)):
+        end = row(X, 0, at)
+        target = np.column_stack([np.full(len(end), 0.1 + sign * half), x[end, 1:]])
+        ends.append(
+            model.Anchor(
+                name=f"end {sign}",
+                kind="frame",
+                points=vertices_as_points(end),
+                target=target,
+                length=np.full(len(end), 0.02),
+                stage="drop",
             )
-        made = cover([(X, T, x)], anchors=ends, stages=[stage], h=0.02, density=1e-3, poisson=0.0)
-        fabric = dataclasses.replace(
-            made.materials[0].fabric, warp=LOADING, warp_unloading=UNLOADING, weft=LOADING
         )
-        material = dataclasses.replace(made.materials[0], fabric=fabric)
-        return dataclasses.replace(made, materials=(material,))
+    made = cover([(X, T, x)], anchors=ends, stages=[stage], h=0.02, density=1e-3, poisson=0.0)
+    fabric = dataclasses.replace(
+        made.materials[0].fabric, warp=LOADING, warp_unloading=UNLOADING, weft=LOADING
+    )
+    material = dataclasses.replace(made.materials[0], fabric=fabric)
+    return dataclasses.replace(made, materials=(material,))
 
+
+def test_cover_remembers_over_a_restart():
+    """A strip held at 5 %, then at 3.5 % by a second solution that starts from the first."""
     first = solve(held(0.05), strict=True)
     # At rest within 1 %; on the way the triangles at both ends swing a little beyond.
     np.testing.assert_allclose(first.strain_mid[:, 0, 0], 0.05, rtol=1e-2)
@@ -203,6 +204,12 @@ def test_cover_remembers_over_a_restart():
     pull = abs(second.forces["end 1"][:, 0].sum()) / 0.04 / np.sqrt(1.07)
     # 50 N/m at the peak, lost at 2000 N/m: 20 N/m, where a first loading would have 35.
     assert pull == pytest.approx(20.0, rel=0.02)
+
+
+@pytest.mark.xfail(strict=True, reason="0.028, since strain runs linearly along free edges")
+def test_a_strip_is_not_strained_further_on_its_way():
+    first = solve(held(0.05), strict=True)
+    np.testing.assert_allclose(first.strain_peak[:, 0], 0.05, rtol=2e-2)
 
 
 @pytest.mark.parametrize(
