@@ -87,7 +87,7 @@ def _print_reached(names: set[str], run: dict[str, set[int]], *, missing: bool) 
     """Print the share of the lines of each reader that ran, in whichever of its formats."""
     from coverage.python import PythonParser
 
-    from support.fuzz.formats import READERS
+    from support.fuzz.readers import READERS
 
     print("\n| reader | lines | reached |\n|---|---|---|")
     for name, reader in READERS.items():
