@@ -7,10 +7,15 @@ import os
 import signal
 import sys
 import threading
+from importlib.machinery import ExtensionFileLoader
 from types import FrameType
 
 EXIT_CODE = 130
 _AGAIN = 5.0  # [s] after which code that swallowed an interrupt is interrupted again
+_SOON = 0.02  # [s] after which code that must not be interrupted is looked at again
+# Compiled modules that are left half made end the process when they are used or thrown away.
+_LOADING = {ExtensionFileLoader.create_module.__code__, ExtensionFileLoader.exec_module.__code__}
+_CALLED_BACK = "llvmlite.binding.executionengine"  # kept from answering, it gives empty code
 
 _process = os.getpid()
 _asked = threading.Event()
@@ -43,10 +48,21 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
         os.kill(os.getpid(), number)
         return
     _asked.set()
-    timer = threading.Timer(_AGAIN, _again, [number])
+    fragile = _is_fragile(frame)
+    timer = threading.Timer(_SOON if fragile else _AGAIN, _again, [number])
     timer.daemon = True
     timer.start()
-    raise KeyboardInterrupt
+    if not fragile:
+        raise KeyboardInterrupt
+
+
+def _is_fragile(frame: FrameType | None) -> bool:
+    """Whether compiled code waits for this frame that does not bear an exception."""
+    while frame is not None:
+        if frame.f_code in _LOADING or frame.f_globals.get("__name__") == _CALLED_BACK:
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _unraisable(unraisable: sys.UnraisableHookArgs) -> None:
