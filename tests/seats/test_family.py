@@ -1,6 +1,7 @@
 """Every shape of the family, at sizes drawn at random: a sound surface, foam, wires, pattern."""
 
 import warnings
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from seatlook import mesh
 from seatlook.errors import InputWarning
 from seatlook.flattening import flatten
 from seatlook.mesh.closest import closest_places, distance_to_segments, pseudonormals
+from seatlook.mesh.overlap import shared_area
 from seatlook.seats import SHAPES, Cushion, demo_design, design_surface, foam_mesh, shaped
 
 pytestmark = pytest.mark.first
@@ -20,13 +22,13 @@ PANEL_COUNTS = {
 
 
 def sizes():
-    """A size of each shape, drawn, and two corners of the range of one."""
+    """A size of each shape, drawn, and corners and a nearly flat one of the range of one."""
     rng = np.random.default_rng(1702)
     for name in SHAPES:
         for scale, bolster in rng.uniform((0.6, 0.0), (1.6, 0.1), (1, 2)):
             yield pytest.param((name, scale, bolster), id=f"{name}-{scale:.2f}-{1e3 * bolster:.0f}")
-    for scale, bolster in ((0.6, 0.1), (1.6, 0.0)):
-        yield pytest.param(("horseshoe", scale, bolster), id=f"{scale}-{1e3 * bolster:.0f}")
+    for scale, bolster in ((0.6, 0.1), (1.6, 0.0), (1.0, 0.0045)):
+        yield pytest.param(("horseshoe", scale, bolster), id=f"{scale}-{1e3 * bolster:g}")
 
 
 @pytest.fixture(params=sizes(), scope="module")
@@ -99,6 +101,8 @@ def test_every_size_flattens(made):
         flat = flatten(surface, tension=0.01)
     assert max(panel.rms for panel in flat.panels) < 0.09
     assert max(abs(seam.difference) for seam in flat.seams) < 5e-5
+    starts = [pose.at(flat.pattern.panel(n).outline) for n, pose in flat.placement.items()]
+    assert all(shared_area(one, two) == 0.0 for one, two in combinations(starts, 2))
 
 
 @pytest.mark.parametrize("name", SHAPES)

@@ -150,7 +150,7 @@ class Builder:
         near, far = self.chain([seam.a]), self.chain(seam.b, reverse=seam.reverse)
         knots_a, knots_b = seam_ease(self.pattern, seam).knots
         a, b = [], []
-        weight = []
+        weight, places = [], []
         total_a, total_b = near[0].length, sum(ln.length for ln in far)
         start = 0.0
         for side in far:
@@ -162,9 +162,16 @@ class Builder:
             a.append(near[0].points(total_a * share_a))
             b.append(side.points(at / share * side.length))
             weight.append(length)
+            places.append(start + at)
             start += share
+        at = np.concatenate(places)
         return Stitching(
-            name=seam.name, a=join(a), b=join(b), length=np.concatenate(weight), stage=stage.name
+            name=seam.name,
+            a=join(a),
+            b=join(b),
+            length=np.concatenate(weight),
+            stage=stage.name,
+            notches=np.interp(knots_b[1:-1], at, np.arange(len(at), dtype=float)),
         )
 
     def hook(self, hook: Hook, scene: Scene, x: FloatArray) -> Anchor:

@@ -185,4 +185,4 @@ def _placed(line: FloatArray, pose: Pose) -> FloatArray:
     arc = arc_length(line)
     at = np.linspace(0.0, arc[-1], 20)
     flat = np.column_stack([np.interp(at, arc, line[:, k]) for k in range(2)])
-    return np.asarray(flat @ pose.rotation[:, :2].T + pose.translation)
+    return pose.at(flat)

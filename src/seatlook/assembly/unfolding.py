@@ -16,6 +16,7 @@ from seatlook.assembly.girth import lay_borders
 from seatlook.assembly.panel_names import hand, words
 from seatlook.errors import InputError, did_you_mean
 from seatlook.mesh import arc_length, face_areas
+from seatlook.mesh.overlap import lifts
 from seatlook.model import Border, FloatArray, Foam, Pattern, Pose, Seam
 from seatlook.solver.foam.distance import DistanceField, distance_field
 
@@ -104,6 +105,8 @@ def lay_out(
         )
     poses |= _beside(pattern, body, unsewn)
     turned = {name: _turned(poses[name], turn.T) for name in names}
+    ways = lifts([turned[name].at(pattern.panel(name).outline) for name in names])
+    turned = {name: turned[name].moved(way) for name, way in zip(names, ways, strict=True)}
     return Layout(
         first=top,
         poses=MappingProxyType(turned),
@@ -201,7 +204,7 @@ def _facing_up(pattern: Pattern, poses: Mapping[str, Pose]) -> FloatArray:
     """Middle (2,) [m] of the panels that lie, not hang, seen from above."""
     points = np.concatenate(
         [
-            pattern.panel(name).outline @ pose.rotation[:2, :2].T + pose.translation[:2]
+            pose.at(pattern.panel(name).outline)[:, :2]
             for name, pose in poses.items()
             if pose.rotation[2, 2] > _LIES
         ]
@@ -276,7 +279,7 @@ def _hung(hinge: _Hinge, placed: Pose, angle_deg: float) -> Pose:
     horseshoe, or on each other.
     """
     (p0, p1), (e0, e1) = _middle(hinge.stretch), _middle(hinge.edge)
-    world = np.array([p0, p1]) @ placed.rotation[:, :2].T + placed.translation
+    world = placed.at(np.array([p0, p1]))
     along = (world[1] - world[0]) / np.linalg.norm(world[1] - world[0])
     up = placed.rotation[:, 2]
     outward = np.cross(along, up)

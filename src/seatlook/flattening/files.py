@@ -17,6 +17,7 @@ from seatlook.flattening.strain_map import write_strain_maps
 from seatlook.flattening.surface import DesignSurface
 from seatlook.io.surface.axes import Unit, Up
 from seatlook.model import Fabric
+from seatlook.model.progress import Progress, silent
 
 PATTERN, SEAMS, PLACEMENT = "pattern.dxf", "seams.toml", "placement.toml"
 PANELS = "panels.obj"
@@ -29,7 +30,7 @@ class FlattenChoices(TypedDict, total=False):
     ``up`` of the surface, by its format and size if not given; ``ease``: seam -> share by which one
     line is longer; ``short``: panel -> share by which it is narrower across its grain; ``tension``:
     share by which all panels are smaller; ``allowance`` [m]; ``fabric`` that takes the least strain
-    energy.
+    energy; ``progress`` is called panel by panel.
     """
 
     seam_lines: Path | None
@@ -40,6 +41,7 @@ class FlattenChoices(TypedDict, total=False):
     tension: float
     allowance: float
     fabric: Fabric | None
+    progress: Progress
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +67,8 @@ def flatten_surface(
         A surface or lines that cannot be read, cut or flattened; names that do not exist.
     """
     folder, lines = Path(out), choices.get("seam_lines")
+    progress = choices.get("progress", silent)
+    progress("read", file=Path(surface).name)
     form = read_design(
         Path(surface), unit=choices.get("unit"), up=choices.get("up"), seam_lines=lines
     )
@@ -76,9 +80,11 @@ def flatten_surface(
         ease=choices.get("ease", MappingProxyType({})),
         short=choices.get("short", MappingProxyType({})),
         tension=choices.get("tension", 0.0),
+        progress=progress,
     )
     write_panels(form, folder / PANELS)
     write_flat_pattern(flat, folder)
+    progress("draw", what="strain")
     lie = lie_of(form, flat)
     write_lie(lie, folder / PLACEMENT)
     _write_seam_lengths(flat, folder / "seam-lengths.csv")

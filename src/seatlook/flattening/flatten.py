@@ -17,12 +17,14 @@ from seatlook.flattening.fabric_sheet import fabric_energy, strains_by_grain
 from seatlook.flattening.face_map import stretches
 from seatlook.flattening.lengths import agreed_ratios, relax_panel
 from seatlook.flattening.pattern import pair, sewing_pattern
-from seatlook.flattening.placement import place
+from seatlook.flattening.placement import poses
 from seatlook.flattening.relax import flatten_patch
 from seatlook.flattening.surface import FREE, DesignSurface, Patch, Side, sides
 from seatlook.model import Fabric, FloatArray, Pattern, Pose
+from seatlook.model.progress import Progress, silent
 
 SEAM_TOLERANCE = 5e-5  # [m] by which the two lines of a seam may differ in length
+SEAM_STRAIN = 0.015  # largest strain that a seam line may take
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,8 +94,8 @@ def flatten(
     tension: float = 0.0,
     ease: Mapping[str, float] = MappingProxyType({}),
     short: Mapping[str, float] = MappingProxyType({}),
-    seam_strain: float = 0.015,
     fabrics: Mapping[str, Fabric] = MappingProxyType({}),
+    progress: Progress = silent,
 ) -> Flattened:
     """Flatten every panel of a design surface and make a sewable pattern of them.
 
@@ -112,11 +114,10 @@ def flatten(
         first panel.
     short : panel name -> fraction
         The panel becomes narrower across its grain.
-    seam_strain : float
-        Largest share of the strain that a seam line may take.
     fabrics : panel name -> Fabric
         What the panel is made of: it takes the least strain energy of that, by its curves along
         warp and weft and in shear. A panel without takes that of an isotropic sheet.
+    progress : called before each panel, twice: alone, then with the lengths of its seams held
 
     Returns
     -------
@@ -148,10 +149,15 @@ def flatten(
 
     _check("fabrics", dict.fromkeys(fabrics, 0.0), surface.panel_names)
 
-    shapes = {p.name: _alone(p, fabrics.get(p.name)) for p in patches}
-    ratio = agreed_ratios(patches, borders, shapes, limit=seam_strain)
+    count = len(patches)
+    shapes = {}
+    for step, patch in enumerate(patches):
+        progress("flatten", panel=patch.name, step=step, steps=2 * count)
+        shapes[patch.name] = _alone(patch, fabrics.get(patch.name))
+    ratio = agreed_ratios(patches, borders, shapes, limit=SEAM_STRAIN)
     flat, excess = {}, []
-    for patch in patches:
+    for step, patch in enumerate(patches, count):
+        progress("flatten", panel=patch.name, step=step, steps=2 * count)
         own = [s for s in borders if s.panel == patch.name and s.neighbour != FREE]
         fabric = fabrics.get(patch.name)
         with _panel_named(patch):
@@ -211,7 +217,7 @@ def _report(
     design = {s.name: float(mesh.arc_length(surface.vertices[s.vertices])[-1]) for s in borders}
     return Flattened(
         pattern=pattern,
-        placement=MappingProxyType({p.name: place(p, flat[p.name]) for p in patches}),
+        placement=MappingProxyType(poses(patches, flat, pattern)),
         flat=MappingProxyType(flat),
         strain=strain,
         grain_strain=by_grain,

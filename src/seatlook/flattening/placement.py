@@ -2,11 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from seatlook.flattening.surface import Patch
 from seatlook.mesh import face_areas
-from seatlook.model import FloatArray, Pose
+from seatlook.mesh.overlap import lifts
+from seatlook.model import FloatArray, Pattern, Pose
+
+
+def poses(
+    patches: Sequence[Patch], flat: Mapping[str, FloatArray], pattern: Pattern
+) -> dict[str, Pose]:
+    """Return a pose for each panel: over its patch, and not in the others.
+
+    A panel that reaches into a trench is wider than its patch looks, so on a nearly flat seat it
+    would lie in its neighbour; it is raised.
+    """
+    result = {patch.name: place(patch, flat[patch.name]) for patch in patches}
+    ways = lifts([pose.at(pattern.panel(name).outline) for name, pose in result.items()])
+    return {name: pose.moved(way) for (name, pose), way in zip(result.items(), ways, strict=True)}
 
 
 def place(patch: Patch, flat: FloatArray, *, lift: float = 0.028, clear: float = 0.012) -> Pose:

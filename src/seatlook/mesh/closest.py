@@ -125,6 +125,35 @@ def distance_to_segments(points: FloatArray, start: FloatArray, end: FloatArray)
     return np.asarray(np.linalg.norm(away - share[..., None] * way, axis=2).min(axis=1))
 
 
+def nearest_segments(
+    points: FloatArray, a: FloatArray, b: FloatArray
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Nearest of many short segments to each point: (index, parameter in [0, 1], distance).
+
+    Parameters
+    ----------
+    points : (k, d); a, b : (s, d)    ends of the segments; only the four with the nearest middles
+        are tried
+
+    Examples
+    --------
+    >>> line = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    >>> nearest_segments(np.array([[0.5, -0.2]]), line[:-1], line[1:])
+    (array([0]), array([0.5]), array([0.2]))
+    """
+    count = min(4, len(a))
+    _, candidates = KDTree(0.5 * (a + b)).query(points, k=count)
+    candidates = np.asarray(candidates).reshape(len(points), count)
+    along = b[candidates] - a[candidates]
+    to = points[:, None] - a[candidates]
+    size = np.maximum((along**2).sum(axis=-1), 1e-30)
+    t = np.clip((to * along).sum(axis=-1) / size, 0.0, 1.0)
+    distance = np.linalg.norm(to - t[..., None] * along, axis=-1)
+    best = distance.argmin(axis=1)
+    row = np.arange(len(points))
+    return candidates[row, best], t[row, best], distance[row, best]
+
+
 def border_segments(faces: IntArray, label: IntArray) -> tuple[IntArray, IntArray]:
     """Edges (e, 2) between faces of two labels, and those labels (e, 2), smaller first."""
     pairs = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)

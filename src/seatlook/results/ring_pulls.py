@@ -22,6 +22,7 @@ class RingPull:
     x, y, z : float [m]         where it sits on the cover
     gap : float [m]             what it is short of its wire
     pull : float [N]
+    per_length : float [N/m]    pull over the length of line that the ring holds
     limit : float [N] or None   largest pull allowed
     """
 
@@ -33,6 +34,7 @@ class RingPull:
     z: float
     gap: float
     pull: float
+    per_length: float
     limit: float | None
 
     @property
@@ -71,6 +73,7 @@ def _rings(solution: Solution) -> Iterator[RingPull]:
         if wire is not None:
             target = mesh.points_at(wire.curve, wire.nearest(points))
         gap = np.linalg.norm(points - target, axis=1)
+        pull = np.linalg.norm(force, axis=1)
         for k, (x, y, z) in enumerate(points.tolist()):
             yield RingPull(
                 hook=anchor.name,
@@ -80,6 +83,7 @@ def _rings(solution: Solution) -> Iterator[RingPull]:
                 y=y,
                 z=z,
                 gap=float(gap[k]),
-                pull=float(np.linalg.norm(force[k])),
+                pull=float(pull[k]),
+                per_length=float(pull[k] / anchor.length[k]),
                 limit=anchor.limit,
             )

@@ -11,6 +11,7 @@ from seatlook import io
 from seatlook.chain.start.scene_file import CURVES, SCENE
 from seatlook.chain.start.surface import flatten_scene
 from seatlook.flattening.files import PANELS, PATTERN, PLACEMENT, SEAMS, write_panels
+from seatlook.model.progress import Progress, silent
 from seatlook.seats.cushion import Cushion
 from seatlook.seats.demo import demo_design, demo_foam_mesh
 from seatlook.seats.family import shaped
@@ -28,7 +29,8 @@ class DemoChoices(TypedDict, total=False):
     which it is narrower across its grain; ``tension``: share by which all panels are smaller;
     ``material``, and ``insert`` for the middle panels: supplied names; ``element_size_mm``,
     ``seed``; ``surface_size`` [m]: edge length of design surface and foam, which stay the same
-    however the cover is meshed; 6 mm for the demo, else 8 mm times the scale.
+    however the cover is meshed; 6 mm for the demo, else 8 mm times the scale; ``progress`` is
+    called panel by panel.
     """
 
     shape: str
@@ -42,6 +44,7 @@ class DemoChoices(TypedDict, total=False):
     element_size_mm: float
     seed: int
     surface_size: float
+    progress: Progress
 
 
 def write_demo(out: Path | str, **choices: Unpack[DemoChoices]) -> Path:
@@ -72,6 +75,7 @@ def write_demo(out: Path | str, **choices: Unpack[DemoChoices]) -> Path:
             "ease": ease,
             "short": short,
             "seam_lines": lines if lines.exists() else None,
+            "progress": choices.get("progress", silent),
         },
         wires=wires if wires.exists() else None,
         name=", ".join(["demo seat", *spoiled]),

@@ -8,8 +8,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TypedDict, Unpack
 
-import numpy as np
-
 from seatlook import io
 from seatlook.assembly.hooking import hooks_beside
 from seatlook.assembly.seam_guess import Proposal, propose_seams
@@ -235,4 +233,4 @@ def _sewn(pattern: Path, seams: Path | None, choices: StartChoices) -> Proposal:
 def _placed(pattern: Pattern, edge: str, layout: Layout) -> FloatArray:
     """Points (k, 3) [m] of an edge where its panel starts."""
     pose = layout.poses[pattern.edges[edge].panel]
-    return np.asarray(pattern.edge_points(edge) @ pose.rotation[:, :2].T + pose.translation)
+    return pose.at(pattern.edge_points(edge))
