@@ -12,6 +12,7 @@ from seatlook.io.material import (
     read_foam_material,
     read_material,
 )
+from seatlook.io.parameter_text import write_material
 from seatlook.model.colour import srgb_decode
 
 LEATHER = (materials_dir() / "black-leather.toml").read_text()
@@ -206,3 +207,36 @@ def test_unloading_below_loading_is_named(write, problems):
         read_material, write("y.toml", LEATHER.replace("weft_n_per_m", BACK.format("-1"), 1))
     )
     assert "fabric.warp_unloading_n_per_m: got -1, expected 0.001 to 1e+09" in problem
+
+
+MEASURED = LEATHER.replace("roughness = 0.40\n", 'gloss_60_gu = 2.0\nmeasured = "d/8 SCI"\n')
+
+
+def test_a_colour_and_a_gloss_that_were_measured(tmp_path):
+    (tmp_path / "own.toml").write_text(MEASURED)
+    look = read_material(tmp_path / "own.toml").appearance
+    assert (look.measured, look.gloss_60) == ("d/8 SCI", 2.0)
+    write_material(tmp_path / "again.toml", read_material(tmp_path / "own.toml"))
+    again = read_material(tmp_path / "again.toml").appearance
+    assert (again.measured, again.gloss_60) == ("d/8 SCI", 2.0)
+    np.testing.assert_array_equal(again.albedo, look.albedo)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("gloss_60_gu = 2.0", "gloss_60_gu = 120", "gloss_60_gu: got 120, expected"),
+        (
+            "gloss_60_gu = 2.0",
+            "gloss_60_gu = 2.0\nroughness = 0.5",
+            "gloss_60_gu: got roughness as",
+        ),
+        ("gloss_60_gu = 2.0", "", "roughness: got nothing"),
+        ("d/8 SCI", "8/d", "measured: got '8/d', expected one of"),
+    ],
+)
+def test_measured_values_that_cannot_be(tmp_path, problems, old, new, message):
+    assert old in MEASURED
+    (tmp_path / "own.toml").write_text(MEASURED.replace(old, new))
+    got = problems(read_material, tmp_path / "own.toml")
+    assert any(message in one for one in got), got

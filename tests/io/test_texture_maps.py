@@ -99,9 +99,11 @@ def test_a_material_names_a_folder_and_its_width(tmp_path):
 def test_a_number_that_neither_file_nor_map_gives(tmp_path, problems):
     save(tmp_path / "linen/linen_Color.png", colour())
     path = tmp_path / "linen.toml"
-    path.write_text(LEATHER.replace(LOOK, 'maps = "linen"\nmaps_width_mm = 120\n'))
+    text = LEATHER.replace(LOOK, 'maps = "linen"\nmaps_width_mm = 120\n')
+    path.write_text(text)
+    line = 1 + text.splitlines().index("[appearance]")
     assert problems(read_material, path) == [
-        "linen.toml:16: appearance.roughness: got nothing, expected a number"
+        f"linen.toml:{line}: appearance.roughness: got nothing, expected a number"
     ]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from seatlook.io.schema import Array, shown
 from seatlook.io.toml import Document, Key
-from seatlook.model.colour import srgb_decode
+from seatlook.model.colour import linear_from_lab, srgb_decode
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,25 +37,3 @@ class Colour:
             document.report(key, shown(value), "a colour that sRGB holds")
             return None
         return np.clip(colour, 0.0, 1.0)
-
-
-def linear_from_lab(lab: Any) -> Any:
-    """Linear sRGB (3,) of CIE L*a*b* (3,) under D65 for the 2 degree observer (CIE 15:2018).
-
-    Examples
-    --------
-    >>> linear_from_lab(np.array([50.0, 0.0, 0.0])).round(4).tolist()
-    [0.1842, 0.1842, 0.1842]
-    """
-    lightness, a, b = lab
-    f = (lightness + 16) / 116 + np.array([a / 500, 0.0, -b / 200])
-    white = np.array([0.95047, 1.0, 1.08883])
-    xyz = white * np.where(f > 6 / 29, f**3, 3 * (6 / 29) ** 2 * (f - 4 / 29))
-    to_rgb = np.array(
-        [
-            [3.2404542, -1.5371385, -0.4985314],
-            [-0.9692660, 1.8760108, 0.0415560],
-            [0.0556434, -0.2040259, 1.0572252],
-        ]
-    )
-    return to_rgb @ xyz

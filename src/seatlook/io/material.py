@@ -17,7 +17,15 @@ from seatlook.io.colour import Colour
 from seatlook.io.schema import MM, THRESHOLD, Array, Kind, Number, Table, Text, read_table, shown
 from seatlook.io.texture_maps import read_texture_maps
 from seatlook.io.toml import Document, Key, read_document
-from seatlook.model import Appearance, Curve, Fabric, FoamMaterial, Material, TextureMaps
+from seatlook.model import (
+    Appearance,
+    Curve,
+    Fabric,
+    FoamMaterial,
+    Hysteresis,
+    Material,
+    TextureMaps,
+)
 
 _SOFTEST, _STIFFEST = 1e-3, 1e9  # N/m
 
@@ -45,6 +53,33 @@ class _StiffnessCurve:
             return None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _ShearHysteresis:
+    """A number, the width, or ``{ width = ..., growth = ..., strain = ... }``."""
+
+    required: bool = False
+    default: None = None
+
+    def read(self, document: Document, key: Key, value: Any) -> Hysteresis | None:
+        width = Number(low=_SOFTEST, high=_STIFFEST, required=True)
+        if not isinstance(value, dict):
+            number = width.read(document, key, value)
+            return None if number is None else Hysteresis(width=number)
+        keys: dict[str, Kind] = {
+            "width": width,
+            "growth": Number(low=0.0, high=_STIFFEST, default=0.0),
+            "strain": Number(low=1e-5, high=1.0, default=0.01),
+        }
+        row = Table(keys).read(document, key, value)
+        if None in row.values():
+            return None
+        try:
+            return Hysteresis(**row)
+        except InputError as error:
+            document.note(key, error)
+            return None
+
+
 _FABRIC: dict[str, Kind] = {
     "thickness_mm": Number(low=0.01, high=20, scale=MM, required=True),
     "density_kg_per_m2": Number(low=1e-3, high=20, required=True),
@@ -53,12 +88,15 @@ _FABRIC: dict[str, Kind] = {
     "shear_n_per_m": _StiffnessCurve(required=True),
     "warp_unloading_n_per_m": _StiffnessCurve(),
     "weft_unloading_n_per_m": _StiffnessCurve(),
+    "shear_hysteresis_n_per_m": _ShearHysteresis(),
     "poisson": Number(low=-2, high=2, required=True),
     "compression_ratio": Number(above=0, high=1, required=True),
     "bending_warp_n_m": Number(low=1e-10, high=1, required=True),
     "bending_weft_n_m": Number(low=1e-10, high=1, required=True),
     "bending_twist_n_m": Number(low=1e-10, high=1, required=True),
     "bending_poisson": Number(low=-2, high=2, required=True),
+    "bending_warp_hysteresis_n": Number(low=0, high=1e3),
+    "bending_weft_hysteresis_n": Number(low=0, high=1e3),
     "c_threshold_per_mm": THRESHOLD,
     "first_wrinkle_radius_mm": Number(low=0.1, high=1e5, scale=MM),
 }
@@ -79,6 +117,8 @@ _APPEARANCE: dict[str, Kind] = {
     "perforation_pitch_mm": Number(low=0.1, high=100, scale=MM, default=6.0),
     "perforation_diameter_mm": Number(low=0, high=50, scale=MM, default=0.0),
     "maps": Text(),
+    "measured": Text(choices=("45/0", "d/8 SCI", "d/8 SCE")),
+    "gloss_60_gu": Number(low=0, high=100),
     "maps_width_mm": Number(low=1, high=10_000, scale=MM),
 }
 _FOAM: dict[str, Kind] = {
@@ -87,6 +127,7 @@ _FOAM: dict[str, Kind] = {
     "young_kpa": Number(low=1e-3, high=1e8, scale=1e3, required=True),
     "poisson": Number(low=-0.99, high=0.499, required=True),
     "friction": Number(low=0, high=2, required=True),
+    "unloading_stress_kpa": Array(shape=(None,), low=0.0, high=1e6, scale=1e3),
 }
 
 
@@ -183,6 +224,10 @@ def _texture_maps(document: Document, look: dict[str, Any]) -> TextureMaps | Non
             given = maps.given
     # What is there and wrong is reported already, and so is a folder that cannot be read.
     written = document.data.get("appearance", look)
+    if look["gloss_60_gu"] is not None:
+        given = (*given, "roughness")
+        if "roughness" in written:
+            document.report(("appearance", "gloss_60_gu"), "roughness as well", "one of them")
     for name, one in (("albedo", np.ones(3)), ("roughness", 1.0)):
         if look[name] is None and name in given:
             look[name] = one
@@ -212,12 +257,10 @@ def read_foam_material(name_or_path: str | Path) -> FoamMaterial:
     row = read_table(document, {"foam": Table(_FOAM, required=True), "source": _source(_FOAM)})
     document.finish()
     foam = row["foam"]
-    if len(foam["strain"]) != len(foam["stress_kpa"]):
-        document.report(
-            ("foam", "stress_kpa"),
-            f"{len(foam['stress_kpa'])} numbers",
-            f"{len(foam['strain'])}, one for each strain",
-        )
+    for name in ("stress_kpa", "unloading_stress_kpa"):
+        if foam[name] is not None and len(foam[name]) != len(foam["strain"]):
+            expected = f"{len(foam['strain'])}, one for each strain"
+            document.report(("foam", name), f"{len(foam[name])} numbers", expected)
     document.finish()
     with document.blame(("foam",)):
         material = FoamMaterial(
@@ -266,4 +309,4 @@ def _given(source: dict[str, str | None]) -> MappingProxyType[str, str]:
 
 
 def _without_unit(key: str) -> str:
-    return re.sub(r"_(mm|kg_per_m2|n_per_m|n_m|kpa)$", "", key)
+    return re.sub(r"_(mm|kg_per_m2|n_per_m|n_m|n|kpa|gu)$", "", key)

@@ -13,21 +13,29 @@ from seatlook.model.cover import (
 )
 from seatlook.model.criteria import Criteria, CurvatureMode, StrainMeasure, criteria_of
 from seatlook.model.fastenings import Thread, Wire
-from seatlook.model.light import (
+from seatlook.model.light.camera import VIEWS, Camera, framed_view, named_view, sphere_distance
+from seatlook.model.light.lamps import (
     LIGHTS,
-    VIEWS,
-    Camera,
     Light,
     Rig,
     booth,
     bulb,
     direction,
-    framed_view,
-    named_view,
-    sphere_distance,
+    rectangle,
+    strip,
     sun,
+    tunnel,
+    two_sided_rectangle,
 )
-from seatlook.model.material import Appearance, Curve, Fabric, Foam, FoamMaterial, Material
+from seatlook.model.material import (
+    Appearance,
+    Curve,
+    Fabric,
+    Foam,
+    FoamMaterial,
+    Hysteresis,
+    Material,
+)
 from seatlook.model.pattern import Edge, Notch, Panel, Pattern, Seam
 from seatlook.model.scene import Border, Design, Frame, Hook, Limit, Pose, Scene, Verdict, ZoneBox
 from seatlook.model.shells import ShellResult, Shells, ShellState
@@ -56,6 +64,7 @@ __all__ = [
     "Frame",
     "Hem",
     "Hook",
+    "Hysteresis",
     "IntArray",
     "Light",
     "Limit",
@@ -88,7 +97,11 @@ __all__ = [
     "direction",
     "framed_view",
     "named_view",
+    "rectangle",
     "sphere_distance",
     "stage_units",
+    "strip",
     "sun",
+    "tunnel",
+    "two_sided_rectangle",
 ]

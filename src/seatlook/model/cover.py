@@ -59,6 +59,8 @@ class Stitching:
     a, b : Points               same length s
     length : (s,) float64 [m]   seam length that each pair stands for
     stage : name of the stage in which the seam closes
+    notches : (k,) float64      pairs at which notches of both sides meet, counted from 0; one
+                                between two pairs is a fraction
     """
 
     name: str
@@ -66,9 +68,11 @@ class Stitching:
     b: Points
     length: FloatArray
     stage: str
+    notches: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         floats(self, "length", len(self.a))
+        floats(self, "notches", None)
         if len(self.a) != len(self.b):
             raise InputError.single(
                 f"seam {self.name}", got=f"{len(self.a)} and {len(self.b)} points", expected="pairs"
@@ -269,8 +273,9 @@ class Solution:
     multipliers : name of stitching or anchor -> (s, 3) [N], the part that is not the spring's
     forces : name of stitching or anchor -> (s, 3) [N], whole pull on side a or on the cover
     friction_anchor : (n, 3) float64 [m]   where each vertex last stuck to the foam; nan = free
-    strain_peak : (m, 2) float64 [1]
-        largest strains so far along warp and weft, -inf = none, of fabrics that unload another way
+    strain_peak : (m, 2 or 3) float64 [1]
+        largest strains so far along warp and weft, -inf = none, of fabrics that unload another way;
+        where shear has friction, also the shear 2 E12 at which that rests
     history : column -> (k,), one row per step: time, energy, residual, gap, iterations, ...
     figures : name -> final value, e.g. "seam_gap_max" [m], "residual" [1], "cpu_seconds"
     settings : how it was solved: revision of the solver, method, time step
@@ -304,7 +309,8 @@ class Solution:
             floats(self, name, m, 2, 2, most=LARGEST_STRAIN)
         floats(self, "friction_anchor", n, 3, finite=False)
         if self.strain_peak is not None:
-            floats(self, "strain_peak", m, 2, finite=False)
+            columns = 3 if np.ndim(self.strain_peak) == 2 and self.strain_peak.shape[1] == 3 else 2
+            floats(self, "strain_peak", m, columns, finite=False)
 
     def __repr__(self) -> str:
         reason = f": {self.reason}" if self.reason else ""

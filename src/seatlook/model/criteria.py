@@ -77,6 +77,20 @@ class Criteria:
             )
         return np.array(self.thresholds)[panel]
 
+    def words(self, panel: IntArray | None = None) -> str:
+        """Mode and threshold as every table of W2 states them, of some faces or of all panels.
+
+        Examples
+        --------
+        >>> Criteria(curvature="tensor", thresholds=(20.0, 50.0 / 3)).words()
+        'tensor, 0.0167 to 0.02 per mm'
+        """
+        values = self.thresholds if panel is None else self.per_face(panel)
+        low, high = 1e-3 * float(np.min(values)), 1e-3 * float(np.max(values))
+        span = f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
+        log = "" if self.strain_measure == "green" else " of logarithmic strain"
+        return f"{self.curvature}{log}, {span} per mm"
+
 
 def criteria_of(
     materials: Sequence[Material],

@@ -13,6 +13,7 @@ from seatlook.model._check import FARTHEST, FloatArray, IntArray, floats, in_ran
 from seatlook.model.texture import TextureMaps
 
 Texture = Literal["none", "leather", "suede", "weave"]
+Geometry = Literal["45/0", "d/8 SCI", "d/8 SCE"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,6 +61,44 @@ class Curve:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Hysteresis:
+    """Friction that adds to an elastic curve, half of ``width`` on the way out and back.
+
+    The stress that it adds rises over ``strain`` after every turn, then stays at half the width.
+
+    Parameters
+    ----------
+    width : float [N/m]    between the way out and the way back where the strain is 0 (KES: 2HG)
+    growth : float [N/m]   what is added to the width per unit of strain, either way
+    strain : float [1]     over which friction builds up to half the width
+
+    Examples
+    --------
+    >>> Hysteresis(width=12.0, growth=20.0).width_at(0.1)
+    14.0
+    """
+
+    width: float
+    growth: float = 0.0
+    strain: float = 0.01
+
+    def __post_init__(self) -> None:
+        positive(self, "width", "strain")
+        in_range(self, "growth", 0.0, 1e9)
+        # Friction must build up faster than it grows, or it never slips.
+        if self.growth * self.strain >= self.width:
+            raise InputError.single(
+                "Hysteresis.growth",
+                got=f"{self.growth:.4g} N/m over a strain of {self.strain:.4g}",
+                expected=f"below {self.width / self.strain:.4g} N/m, width over strain",
+            )
+
+    def width_at(self, strain: float) -> float:
+        """Return the full width [N/m] of the loop at a strain of either sign."""
+        return self.width + self.growth * abs(strain)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Fabric:
     """Mechanics of a sheet; bending does not follow from the membrane but stands for itself.
 
@@ -73,10 +112,13 @@ class Fabric:
     warp_unloading, weft_unloading : Curve, optional
         tension on the way back, over the strain from where it is gone; the same as on the way out
         if not given, and never below it
+    shear_hysteresis : Hysteresis, optional   friction on top of ``shear``, which is the mean then
     compression_ratio : float      compressive stiffness over the first stiffness of the curve
     bending_warp, bending_weft, bending_twist : float [N m]
         D11 (curvature along warp), D22 and D66 of ``m = D kappa`` with kappa = (k11, k22, 2 k12)
     bending_poisson : float        D12 = bending_poisson * D22
+    bending_warp_hysteresis, bending_weft_hysteresis : float [N], optional
+        moment per width between bending and unbending (KES: 2HB); the solver bends elastically
     """
 
     thickness: float
@@ -86,16 +128,23 @@ class Fabric:
     shear: Curve
     warp_unloading: Curve | None = None
     weft_unloading: Curve | None = None
+    shear_hysteresis: Hysteresis | None = None
     poisson: float = 0.0
     compression_ratio: float = 1.0
     bending_warp: float
     bending_weft: float
     bending_twist: float
     bending_poisson: float = 0.0
+    bending_warp_hysteresis: float | None = None
+    bending_weft_hysteresis: float | None = None
 
     def __post_init__(self) -> None:
         positive(self, "thickness", "density", "bending_warp", "bending_weft", "bending_twist")
         in_range(self, "compression_ratio", 1e-6, 1.0)
+        for name in ("bending_warp_hysteresis", "bending_weft_hysteresis"):
+            if getattr(self, name) is not None:
+                in_range(self, name, 0.0, 1e3)
+        _check_friction(self.shear, self.shear_hysteresis)
         for name in ("warp", "weft"):
             _check_unloading(name, getattr(self, name), getattr(self, f"{name}_unloading"))
         for name, matrix in (("membrane", self.membrane_matrix), ("bending", self.bending_matrix)):
@@ -126,6 +175,17 @@ class Fabric:
                 [0.0, 0.0, self.bending_twist],
             ]
         )
+
+
+def _check_friction(shear: Curve, hysteresis: Hysteresis | None) -> None:
+    """Refuse friction that falls faster on the way back than the elastic part rises."""
+    if hysteresis is None or 0.5 * hysteresis.growth < shear.stiffness.min():
+        return
+    raise InputError.single(
+        "Fabric.shear_hysteresis",
+        got=f"a growth of {hysteresis.growth:.4g} N/m",
+        expected=f"below {2.0 * shear.stiffness.min():.4g} N/m, twice the least shear stiffness",
+    )
 
 
 def _check_unloading(name: str, loading: Curve, unloading: Curve | None) -> None:
@@ -175,6 +235,9 @@ class Appearance:
     perforation_pitch, perforation_diameter : float [m]
         punched holes in staggered rows along the warp; diameter 0 for none
     maps : measured maps; albedo, metalness and roughness above multiply theirs
+    measured : how an instrument measured the colour that ``albedo`` then is: ``45/0``, ``d/8 SCI``
+        or ``d/8 SCE``; None: it is that of the base
+    gloss_60 : gloss units at 60 degrees (ISO 2813) that stand for the roughness, or None
     """
 
     albedo: FloatArray
@@ -192,9 +255,17 @@ class Appearance:
     perforation_pitch: float = 0.006
     perforation_diameter: float = 0.0
     maps: TextureMaps | None = None
+    measured: Geometry | None = None
+    gloss_60: float | None = None
 
     def __post_init__(self) -> None:
         floats(self, "albedo", 3)
+        if self.gloss_60 is not None:
+            in_range(self, "gloss_60", 0.0, 100.0)
+            if self.maps is not None and "roughness" in self.maps.given:
+                raise InputError.single(
+                    "Appearance.gloss_60", got="a roughness map as well", expected="one of them"
+                )
         floats(self, "sheen", 3)
         for name in ("albedo", "metalness", "sheen", "coat"):
             in_range(self, name, 0.0, 1.0)
@@ -244,6 +315,8 @@ class FoamMaterial:
     strain, stress : (k,) float64 [1], [Pa]   compression curve of a column, from (0, 0), rising
     young : float [Pa]; poisson : float        small-strain elasticity, for short waves
     friction : float                           cover on foam
+    unloading_stress : (k,) float64 [Pa], optional
+        stress on the way back, at most ``stress``; kept, the solver presses elastically
     """
 
     name: str
@@ -252,6 +325,7 @@ class FoamMaterial:
     young: float
     poisson: float
     friction: float
+    unloading_stress: FloatArray | None = None
     source: MappingProxyType[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
@@ -265,6 +339,15 @@ class FoamMaterial:
         positive(self, "young")
         in_range(self, "poisson", -0.99, 0.499)
         in_range(self, "friction", 0.0, 2.0)
+        if self.unloading_stress is not None:
+            floats(self, "unloading_stress", len(self.strain))
+            back = self.unloading_stress
+            if (back < 0).any() or (back > self.stress).any() or (np.diff(back) < 0).any():
+                raise InputError.single(
+                    "FoamMaterial.unloading_stress",
+                    got=back.tolist(),
+                    expected="a rising curve from 0 that is nowhere above stress",
+                )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,7 +14,8 @@ from seatlook.errors import InputError
 from seatlook.model._check import FARTHEST, FloatArray, IntArray, floats, ints, positive
 from seatlook.model.criteria import CurvatureMode
 from seatlook.model.fastenings import Thread
-from seatlook.model.light import Camera, Rig
+from seatlook.model.light.camera import Camera
+from seatlook.model.light.lamps import Rig
 from seatlook.model.material import Appearance, Foam, Material
 from seatlook.model.pattern import Pattern
 from seatlook.model.stage import Stage
@@ -55,6 +56,14 @@ class Pose:
             raise InputError.single(
                 "Pose.rotation", got=self.rotation.tolist(), expected="a proper rotation matrix"
             )
+
+    def at(self, flat: FloatArray) -> FloatArray:
+        """Places (n, 3) [m] of points (n, 2) [m] of the panel."""
+        return np.asarray(flat @ self.rotation[:, :2].T + self.translation)
+
+    def moved(self, way: FloatArray) -> Pose:
+        """The pose moved by (3,) [m]."""
+        return Pose(rotation=self.rotation, translation=self.translation + way)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
@@ -68,6 +68,17 @@ class Table:
             for row in self.texts
         )
         return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
+
+
+def spaced(values: Iterable[float] | None) -> str | None:
+    """Write numbers of one cell, four digits each; None stays None.
+
+    Examples
+    --------
+    >>> spaced([12072.4, 0.00011])
+    '1.207e+04 0.00011'
+    """
+    return None if values is None else " ".join(f"{value:.4g}" for value in values)
 
 
 def number(value: float | str | None) -> str:

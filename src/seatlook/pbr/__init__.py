@@ -37,6 +37,15 @@ if TYPE_CHECKING:
     from seatlook.pbr.picture import (
         Picture as Picture,
     )
+    from seatlook.pbr.reflectance.instrument import (
+        appearance_of as appearance_of,
+    )
+    from seatlook.pbr.reflectance.instrument import (
+        gloss as gloss,
+    )
+    from seatlook.pbr.reflectance.instrument import (
+        lab as lab,
+    )
     from seatlook.pbr.reflectance.relief import (
         bake_grain as bake_grain,
     )
@@ -52,9 +61,12 @@ _PUBLIC: dict[str, str] = {
     "Image": "seatlook.pbr.picture",
     "Picture": "seatlook.pbr.picture",
     "Studio": "seatlook.pbr.shading.studio",
+    "appearance_of": "seatlook.pbr.reflectance.instrument",
     "bake_grain": "seatlook.pbr.reflectance.relief",
     "ev100": "seatlook.pbr.light.exposure",
+    "gloss": "seatlook.pbr.reflectance.instrument",
     "illuminance": "seatlook.pbr.light.rig",
+    "lab": "seatlook.pbr.reflectance.instrument",
     "lux_at_seat": "seatlook.pbr.light.rig",
     "offscreen_backend": "seatlook.pbr.backend",
     "render": "seatlook.pbr.shading.studio",
@@ -67,9 +79,12 @@ __all__ = [
     "Image",
     "Picture",
     "Studio",
+    "appearance_of",
     "bake_grain",
     "ev100",
+    "gloss",
     "illuminance",
+    "lab",
     "lux_at_seat",
     "offscreen_backend",
     "render",

@@ -18,7 +18,9 @@ from seatlook.errors import InputError
 from seatlook.exr import write_exr
 from seatlook.files import write_bytes
 from seatlook.model import Camera, FloatArray
-from seatlook.pbr.light.exposure import Radiance, to_display
+from seatlook.model._check import in_range
+from seatlook.pbr.light.exposure import Radiance, exposure_of, to_display
+from seatlook.pbr.light.rig import LUMINANCE
 
 RUN_KEY = "seatlook run"  # of the text in a PNG that names the run
 
@@ -34,6 +36,9 @@ class Image:
     lux : light name -> lux on the grey card at the seat, with ``total``
     white : (3,) float64, luminance 1      colour that the display shows neutral
     tone : name of the tone curve
+    card : (3,) float64 [cd/m2] or None     radiance of a white card at the seat facing the light
+    review : whether that card is shown as white, 255: a facing colour shows what was typed
+    adaptation : how far the eye has adapted to the colour of the light, 0 to 1 (von Kries)
     cover : (h, w) float32 in [0, 1]       share of the pixel that shows the cover
     """
 
@@ -42,12 +47,29 @@ class Image:
     lux: MappingProxyType[str, float] = field(default_factory=lambda: MappingProxyType({}))
     white: FloatArray = field(default_factory=lambda: np.ones(3))
     tone: str = "clamp"
+    card: FloatArray | None = None
+    review: bool = False
+    adaptation: float = 1.0
     camera: Camera | None = None
     cover: npt.NDArray[np.float32] | None = None
 
     def to_srgb(self) -> npt.NDArray[np.uint8]:
-        """Eight-bit sRGB (h, w, 3) at this exposure."""
-        return to_display(self.radiance, self.ev100, white=self.white, tone=self.tone)
+        """Eight-bit sRGB (h, w, 3) at this exposure.
+
+        Raises
+        ------
+        InputError
+            A review of a picture whose card is not known, or an adaptation that is no share.
+        """
+        in_range(self, "adaptation", 0.0, 1.0)
+        ev, white = self.ev100, self.white
+        if self.review:
+            if self.card is None:
+                raise InputError.single("Image.card", got="None", expected="a card, to review by")
+            luminance = float(self.card @ LUMINANCE)
+            ev, white = exposure_of(luminance), self.card / luminance
+        white = self.adaptation * white + (1.0 - self.adaptation)
+        return to_display(self.radiance, ev, white=white, tone=self.tone)
 
     def to_png(self, run: str = "") -> bytes:
         """PNG file content; ``run`` names the run that it belongs to, in a text of the file."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from seatlook.model import Appearance, Light, Rig
-from seatlook.model.light import direction
+from seatlook.model.light.lamps import direction
 from seatlook.pbr.reflectance import brdf
 from seatlook.pbr.shading.studio import Studio
 from support.reference.lit_sheets import above, flat, grid, sheet

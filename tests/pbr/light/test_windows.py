@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seatlook.model import Appearance, Camera, Light, Rig
-from seatlook.model.light import direction, turned
+from seatlook.model.light.lamps import direction, turned
 from seatlook.pbr.light.panorama import directions, irradiance_on, solid_angles
 from seatlook.pbr.light.rig import LUMINANCE, illuminance
 from seatlook.pbr.light.windows import MOST, with_windows

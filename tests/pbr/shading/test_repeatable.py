@@ -15,10 +15,11 @@ TESTS = Path(__file__).parents[2]
 DRAW = """
 import hashlib, numpy as np
 from support.reference.lit_sheets import sheet
-from seatlook.model import Appearance, Rig, bulb, named_view, sun
+from seatlook.model import Appearance, Rig, bulb, named_view, strip, sun
 from seatlook.pbr import render
 look = Appearance(albedo=np.full(3, 0.1), texture="leather", texture_depth=6e-5)
 lights = (sun(elevation_deg=40, azimuth_deg=300), bulb(position_mm=(0, -200, 300)))
+lights += (strip(position_mm=(300, 0, 500), lumen=2e5),)
 rig = Rig(name="r", lights=lights)
 camera = named_view("front_34", target=np.zeros(3), size=(96, 54), distance=0.4)
 image = render(sheet(lambda x, y: 0.01 * np.cos(60 * x), steps=20), look, rig=rig, camera=camera)

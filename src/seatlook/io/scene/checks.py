@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from seatlook import mesh
 from seatlook.errors import InputWarning
 from seatlook.io.toml import Document
+from seatlook.mesh.overlap import shared_area
 from seatlook.mesh.surface import winding
 from seatlook.model import FloatArray, Foam, Pattern, Pose
 
@@ -24,8 +25,6 @@ LONGEST_LINE = 1.05
 # How far a tie can press soft foam in where no trench is modelled.
 DEEPEST_WIRE = 0.030  # m
 _SPACING = 0.005  # of the points at which a wire is looked at [m]
-_ONE_PLANE = 0.001  # distance of panels that lie on each other [m]
-_OVERLAP = 0.01  # share of the smaller panel
 _FARTHEST = 10.0  # times the diagonal of the foam, from its middle to where a panel starts
 _IN_SCALE = (0.13, 3.5)  # largest panel over the diagonal of the foam; wrong by ten is outside
 _nearest: Any = trimesh.triangles.closest_point  # one point for each of (m, 3, 3) triangles
@@ -73,14 +72,8 @@ def check_overlap(
         return
     placed = [p for p in pattern.panels if p.name in placement]
     for a, b in combinations(placed, 2):
-        pose, other = placement[a.name], placement[b.name]
-        world = b.outline @ other.rotation[:, :2].T + other.translation
-        u, v, w = ((world - pose.translation) @ pose.rotation).T
-        if np.abs(w).max() > _ONE_PLANE:
-            continue
-        one, two = shapely.Polygon(a.outline), shapely.Polygon(np.column_stack([u, v]))
-        shared = one.intersection(two).area
-        if shared > _OVERLAP * min(one.area, two.area):
+        shared = shared_area(placement[a.name].at(a.outline), placement[b.name].at(b.outline))
+        if shared > 0.0:
             document.report(
                 ("placement", b.name),
                 f"{1e4 * shared:.1f} cm2 on {a.name}, in the same plane",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +13,18 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.io.panorama import read_panorama
 from seatlook.io.scene.files import SceneFiles
-from seatlook.io.schema import FAR_MM, MM, Array, Kind, Number, Rows, Table, Text, Texts, place_mm
+from seatlook.io.schema import (
+    FAR_MM,
+    MM,
+    Array,
+    Kind,
+    Number,
+    Rows,
+    Table,
+    Text,
+    Texts,
+    place_mm,
+)
 from seatlook.io.toml import Document, Key
 from seatlook.model import (
     LIGHTS,
@@ -26,12 +38,13 @@ from seatlook.model import (
     named_view,
     sphere_distance,
 )
-from seatlook.model.light import BRIGHTEST, DISTANCE, turned
+from seatlook.model.light.camera import DISTANCE
+from seatlook.model.light.lamps import BRIGHTEST, turned
 
 
 @dataclass(frozen=True, slots=True)
 class LightTable:
-    """``kind`` and the arguments of that function of ``model.LIGHTS``; a Light, or None."""
+    """``kind`` and the arguments of that function of ``model.LIGHTS``; its lights, or None."""
 
     required: bool = False
 
@@ -43,19 +56,20 @@ class LightTable:
             # Without a kind, nothing can be said about the other keys.
             bare = {"kind": chosen} if chosen is not None else {}
             Table(kinds).read(document, key, bare if isinstance(value, dict) else value)
-            return {"light": None}
+            return {"lights": None}
         make = LIGHTS[chosen]
         before = len(document.problems)
         row = Table({**kinds, **arguments(make)}).read(document, key, value)
-        light: Light | None = None
+        lights: tuple[Light, ...] | None = None
         if len(document.problems) == before:
             given = {k: v for k, v in row.items() if k in value and k != "kind"}
             with document.blame(key):
-                light = make(**given)
-        return {"light": light}
+                made = make(**given)
+                lights = (made,) if isinstance(made, Light) else made
+        return {"lights": lights}
 
 
-def arguments(make: Callable[..., Light]) -> dict[str, Kind]:
+def arguments(make: Callable[..., Light | tuple[Light, ...]]) -> dict[str, Kind]:
     """Return what a light's function takes, read from its signature."""
     kinds: dict[str, Kind] = {}
     for name, parameter in inspect.signature(make).parameters.items():
@@ -64,7 +78,7 @@ def arguments(make: Callable[..., Light]) -> dict[str, Kind]:
         if annotation == "str":
             kinds[name] = Text(required=required)
         elif annotation.startswith("tuple"):
-            kinds[name] = Array(shape=(3,), required=required)
+            kinds[name] = Array(shape=(annotation.count("float"),), required=required)
         else:
             kinds[name] = Number(required=required)
     return kinds
@@ -106,7 +120,7 @@ def make_rigs(document: Document, rows: list[dict[str, Any]], files: SceneFiles)
     """Build the rigs of a scene; one with a light or sky that is wrong is left out."""
     rigs = []
     for number, row in enumerate(rows):
-        lights = [light["light"] for light in row["light"] or ()]
+        lights = [light["lights"] for light in row["light"] or ()]
         if row["name"] is None or row["ambient_cd_m2"] is None or None in lights:
             continue
         with document.blame(("rig", number)):
@@ -115,7 +129,7 @@ def make_rigs(document: Document, rows: list[dict[str, Any]], files: SceneFiles)
                 continue
             rig = Rig(
                 name=row["name"],
-                lights=tuple(lights),
+                lights=tuple(itertools.chain.from_iterable(lights)),
                 ambient=row["ambient_cd_m2"],
                 ev100=row["ev100"],
                 panorama=sky,

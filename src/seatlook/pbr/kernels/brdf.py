@@ -269,8 +269,8 @@ def brdf(tables, reflector, wider, ToL, BoL, NoL, out):
     LoH = min(1.0, ToL * ToH + BoL * BoH + NoL * NoH)
     ax, ay = widened(view.alpha_x, wider), widened(view.alpha_y, wider)
     lobe = GGX_stretched(ax, ay, view, ToL, BoL, NoL, ToH, BoH, NoH)
-    azimuth = _azimuth(reflector.material, ToL, BoL)
-    _layered(tables, reflector, wider, lobe, (azimuth, NoL, NoH, LoH), out)
+    lobes = (lobe, _top(reflector, wider, NoL, NoH))
+    layered(tables, reflector, lobes, (ToL, BoL, NoL, NoH, LoH), out)
 
 
 @leaf()
@@ -278,17 +278,29 @@ def brdf_isotropic(tables, reflector, wider, NoL, NoH, LoH, out):
     """Same where the lobe is as wide along as across, by the cosines alone."""
     view = reflector.sight
     lobe = GGX(lobe_of(view.alpha_x, wider), view.NoV, NoL, NoH)
-    _layered(tables, reflector, wider, lobe, (0.5, NoL, NoH, LoH), out)
+    lobes = (lobe, _top(reflector, wider, NoL, NoH))
+    layered(tables, reflector, lobes, (0.0, 0.0, NoL, NoH, LoH), out)
 
 
 @leaf()
-def _layered(tables, reflector, wider, lobe, cosines, out):
-    """All layers, with the base's lobe at hand.
+def _top(reflector, wider, NoL, NoH):
+    """Lobe D V of the coat, 0 where there is none."""
+    material = reflector.material
+    if material.coat == 0.0:
+        return 0.0
+    return GGX(lobe_of(material.coat_roughness**2, wider), reflector.sight.NoV, NoL, NoH)
 
+
+@leaf()
+def layered(tables, reflector, lobes, cosines, out):
+    """All layers, with the lobes D V of base and coat at hand, into ``out`` (3,).
+
+    ``cosines``: of the light to warp, weft and normal, of the half-vector to normal and light.
     Of a mixture so much of the area is bare metal, the rest dielectric under sheen and coat.
     """
-    (azimuth, NoL, NoH, LoH), material, view = cosines, reflector.material, reflector.sight
-    here = view.layers
+    (ToL, BoL, NoL, NoH, LoH), (lobe, top) = cosines, lobes
+    material, view = reflector.material, reflector.sight
+    azimuth, here = _azimuth(material, ToL, BoL), view.layers
     there = layers_at(tables, material, view.rows, view.means, azimuth, NoL)
     lost = (1.0 - here.scale - here.bias) * (1.0 - there.scale - there.bias)
     lost /= np.pi * (1.0 - view.means.base)
@@ -299,7 +311,6 @@ def _layered(tables, reflector, wider, lobe, cosines, out):
     grey = (f0 + (F90(f0) - f0) * m) * lobe + view.means.again * lost
     grey *= dielectric * min(here.sheen, there.sheen)
     if material.coat > 0.0:
-        top = GGX(lobe_of(material.coat_roughness**2, wider), view.NoV, NoL, NoH)
         again = here.coat_lost * there.coat_lost / (np.pi * (1.0 - view.means.coat))
         top = (COAT_F0 + (1.0 - COAT_F0) * m) * top + view.means.coat_again * again
         grey += dielectric * material.coat * top

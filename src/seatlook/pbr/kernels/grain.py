@@ -28,7 +28,7 @@ class Textures(NamedTuple):
 
 # Order of the maps, and share of the colour by which a stroke of the hand changes suede.
 LEATHER, SUEDE, WEAVE = 0, 1, 2
-_STROKE = 0.035
+STROKE = 0.035
 # Texels are as wide as this share of a sample: the levels' own filter is wider than a box, and the
 # steep narrow folds of a grain are no Gaussian that roughness could stand for.
 SHARP = 0.5
@@ -112,7 +112,7 @@ def stroke(material, u, v):
         return 1.0
     bend = 0.4 * smooth(u / 0.06, v / 0.06, 3)
     mark = 4.0 * smooth(u / 0.05 + bend, v / 0.03 + bend, 1)
-    return 1.0 + _STROKE * (mark / np.sqrt(1.0 + mark * mark) - 1.0)
+    return 1.0 + STROKE * (mark / np.sqrt(1.0 + mark * mark) - 1.0)
 
 
 @leaf()

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.area import is_rectangle, rectangle_at
 from seatlook.pbr.kernels.coherent import FIRST_HALF, WHOLE
 from seatlook.pbr.kernels.surface import along, cross, dot, minus, row, unit
 
@@ -16,16 +17,18 @@ SMALL = 0.01
 
 
 class Lights(NamedTuple):
-    """``near`` (k,): 0 far, 1 near; ``vector`` (k, 3); ``intensity`` (k, 3) [lux] or [cd].
+    """``near`` (k,): 0 far, 1 near, 2 and 3 rectangles; ``vector`` (k, 3).
 
-    ``size`` (k,): angular diameter [rad] or radius [m]; ``disc`` (s, 2): points of the unit disc
-    that the samples of a pixel look at, one each.
+    ``intensity`` (k, 3) [lux] or [cd]; ``size`` (k,): angular diameter [rad] or radius [m], of a
+    rectangle that of a disc as large; ``sides`` (k, 2, 3) [m]: halves of a rectangle's;
+    ``disc`` (s, 2): points of the unit disc that the samples of a pixel look at, one each.
     """
 
     near: npt.NDArray[np.int64]
     vector: npt.NDArray[np.float64]
     intensity: npt.NDArray[np.float64]
     size: npt.NDArray[np.float64]
+    sides: npt.NDArray[np.float64]
     disc: npt.NDArray[np.float64]
 
 
@@ -48,11 +51,17 @@ class Indirect(NamedTuple):
 
 @leaf()
 def arriving(lights, k, p):
-    """Unit direction to light k and irradiance (3,) [lux] on a plane facing it."""
+    """Unit direction to light k and irradiance (3,) [lux] on a plane facing it.
+
+    A rectangle is taken for a small one.
+    """
     if lights.near[k] == 0:
         return row(lights.vector, k), row(lights.intensity, k)
     to = minus(row(lights.vector, k), p)
     s = 1.0 / dot(to, to)
+    if is_rectangle(lights, k):
+        rectangle = rectangle_at(lights, k, p)
+        s *= rectangle.ahead * np.sqrt(s)
     i = row(lights.intensity, k)
     return unit(to), (i[0] * s, i[1] * s, i[2] * s)
 

@@ -49,11 +49,29 @@ def brdf_of_relief(reflector, relief, disc, within, n, v, out):
     ``disc``: of the light; ``within``: what the slopes within a relief sample add to the squared
     width of a lobe; ``n``: normal without the relief.
     """
-    material, view, (rows, size) = reflector.material, reflector.sight, relief
+    rows, size = relief
     _cosines(relief, disc, n, v)
     layers_towards(reflector.layers, rows.NoL, size, rows.light)
     wider = disc.wider + within
-    _base(lobe_of(view.alpha_x, wider), relief)
+    _lobe(lobe_of(reflector.sight.alpha_x, wider), relief, rows.low)
+    if reflector.material.coat > 0.0:
+        _lobe(lobe_of(reflector.material.coat_roughness**2, wider), relief, rows.top)
+    reflected_by(reflector, relief, out)
+
+
+@leaf()
+def _lobe(lobe, relief, out):
+    """D V of a lobe at every sample, into a row."""
+    rows, size = relief
+    for q in range(size):
+        out[q] = GGX(lobe, rows.NoV[q], rows.NoL[q], rows.NoH[q])
+
+
+@leaf()
+def reflected_by(reflector, relief, out):
+    """The same, where cosines, layers and the lobes D V of base and coat are at hand."""
+    material, view, (rows, size) = reflector.material, reflector.sight, relief
+    _base(relief)
     dielectric, f0 = 1.0 - material.metalness, material.f0
     diffuse = dielectric * mean_of(rows.diffuse, size) / (np.pi * reflector.coupling)
     bounced = 1.0 / (np.pi * (1.0 - view.means.base))
@@ -61,12 +79,11 @@ def brdf_of_relief(reflector, relief, disc, within, n, v, out):
     grey += view.means.again * bounced * mean_of(rows.again, size)
     sheen = dielectric * _sheen(reflector.fibres, relief) if sheen_share(material) > 0.0 else 0.0
     if material.coat > 0.0:
-        coat_width = lobe_of(material.coat_roughness**2, wider)
-        grey += material.coat * _coat(coat_width, view, relief)
+        grey += material.coat * _coat(view, relief)
     for k in range(3):
         out[k] = dielectric * grey + view.colour[k] * diffuse + sheen * material.sheen[k]
     if material.metalness > 0.0:
-        _bare(lobe_of(view.alpha_x, wider), relief)
+        _bare(relief)
         again = bounced * mean_of(rows.again, size)
         lobe, grazing = mean_of(rows.lobe, size), mean_of(rows.lobe_grazing, size)
         for k in range(3):
@@ -75,7 +92,7 @@ def brdf_of_relief(reflector, relief, disc, within, n, v, out):
 
 
 @leaf()
-def _base(lobe, relief):
+def _base(relief):
     """What diffuse base, lobe and bounces in it reflect below sheen and coat, but for colours."""
     rows, size = relief
     here, there = rows.layers, rows.light
@@ -85,13 +102,13 @@ def _base(lobe, relief):
         rows.diffuse[q] = c * rows.share[q] * here.base[q] * there.base[q]
         c *= min(here.sheen[q], there.sheen[q])
         rows.again[q] = c * here.lost[q] * there.lost[q]
-        c *= GGX(lobe, rows.NoV[q], NoL, rows.NoH[q])
+        c *= rows.low[q]
         rows.lobe[q] = c
         rows.lobe_grazing[q] = c * rows.grazing[q]
 
 
 @leaf()
-def _bare(lobe, relief):
+def _bare(relief):
     """What a lobe and bounces in it reflect that nothing covers, but for colours."""
     rows, size = relief
     here, there = rows.layers, rows.light
@@ -99,7 +116,7 @@ def _bare(lobe, relief):
         NoL = rows.NoL[q]
         c = NoL * rows.part[q]
         rows.again[q] = c * here.lost[q] * there.lost[q]
-        c *= GGX(lobe, rows.NoV[q], NoL, rows.NoH[q])
+        c *= rows.low[q]
         rows.lobe[q] = c
         rows.lobe_grazing[q] = c * rows.grazing[q]
 
@@ -120,7 +137,7 @@ def _sheen(fibres, relief):
 
 
 @leaf()
-def _coat(lobe, view, relief):
+def _coat(view, relief):
     """Mean of what a whole coat reflects."""
     rows, size = relief
     here, there = rows.layers, rows.light
@@ -128,7 +145,7 @@ def _coat(lobe, view, relief):
         NoL = rows.NoL[q]
         c = NoL * rows.part[q]
         fresnel = COAT_F0 + (1.0 - COAT_F0) * rows.grazing[q]
-        rows.coat[q] = c * fresnel * GGX(lobe, rows.NoV[q], NoL, rows.NoH[q])
+        rows.coat[q] = c * fresnel * rows.top[q]
         rows.coat_again[q] = c * here.coat_lost[q] * there.coat_lost[q]
     again = mean_of(rows.coat_again, size) / (np.pi * (1.0 - view.means.coat))
     return mean_of(rows.coat, size) + view.means.coat_again * again

@@ -46,6 +46,8 @@ RELIEF = np.dtype(
         *((name, *_ROW) for name in ("part", "NoL", "NoH", "grazing")),
         ("light", LAYERS),
         ("fibres", *_ROW),
+        # Lobes D V of base and coat; weights of a rectangle's cells.
+        *((name, *_ROW) for name in ("low", "top", "weight")),
         # Reflected by the diffuse base, its lobe, the same times Fresnel's power, bounces in it,
         # sheen, coat, bounces in that.
         *((name, *_ROW) for name in ("diffuse", "lobe", "lobe_grazing", "again")),

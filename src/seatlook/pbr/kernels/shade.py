@@ -9,6 +9,8 @@ import numpy.typing as npt
 from numba import njit
 
 from seatlook.pbr.kernels import leaf
+from seatlook.pbr.kernels.area import CELLS, CORNERS, is_rectangle
+from seatlook.pbr.kernels.area_light import add_to_lobe, add_to_relief
 from seatlook.pbr.kernels.brdf import Reflector, albedo_towards, brdf, brdf_isotropic, view_of
 from seatlook.pbr.kernels.coherent import FIRST_HALF, SECOND_HALF, WHOLE
 from seatlook.pbr.kernels.detail import detail_of
@@ -25,6 +27,7 @@ from seatlook.pbr.kernels.light import (
 from seatlook.pbr.kernels.parts import in_parts
 from seatlook.pbr.kernels.relief_light import brdf_of_relief, look_at_discs
 from seatlook.pbr.kernels.relief_samples import (
+    MOST,
     RELIEF,
     Relief,
     layers_towards,
@@ -43,8 +46,9 @@ class Raster(NamedTuple):
     """What the ``factor`` x ``factor`` samples of each of (h, w) pixels see.
 
     ``ids`` (h factor, w factor): face per sample, -1 for none; ``visibility`` (k, h factor,
-    w factor): share of each light, in 1/255; ``coherent`` (h, w): pixels of 2 x 2 samples of which
-    fewer are enough; ``side``: relief samples along each side of a pixel.
+    w factor): share of each light, in 1/255, of a rectangle its cells, one bit each;
+    ``coherent`` (h, w): pixels of 2 x 2 samples of which fewer are enough; ``side``: relief
+    samples along each side of a pixel.
     """
 
     ids: npt.NDArray[np.int32]
@@ -59,7 +63,9 @@ class Scratch(NamedTuple):
 
     ``total`` (3,): radiance of the pixel; ``work`` (3, 3): that of a sample in the first row;
     ``visible`` (k,): share of each light that the sample sees; ``material`` (1,): record of one
-    whose metalness is that of a map; ``relief`` (1,): record of ``relief_samples.RELIEF``.
+    whose metalness is that of a map; ``relief`` (1,): record of ``relief_samples.RELIEF``;
+    ``corners`` (2, n, 4), ``shares`` (2, n) and ``cells`` (c, 11): of the cells of a rectangle;
+    ``edge``: row of a relief.
     """
 
     total: npt.NDArray[np.float64]
@@ -67,6 +73,10 @@ class Scratch(NamedTuple):
     visible: npt.NDArray[np.float64]
     material: npt.NDArray[np.void]
     relief: npt.NDArray[np.void]
+    corners: npt.NDArray[np.float64]
+    shares: npt.NDArray[np.float64]
+    cells: npt.NDArray[np.float64]
+    edge: npt.NDArray[np.float64]
 
 
 @leaf()
@@ -102,8 +112,14 @@ def _shade(stage, sample, scratch):
     for k in range(len(lights.near)):
         if scratch.visible[k] <= 0.0:
             continue
-        if has_relief:
+        bits = int(scratch.visible[k] * 255.0 + 0.5)
+        if has_relief and is_rectangle(lights, k):
+            add_to_relief(lights, k, bits, place, reflector, relief, detail.within, scratch)
+        elif has_relief:
             _add_to_relief(lights, k, place, reflector, relief, detail.within, scratch)
+        elif is_rectangle(lights, k):
+            axes, wide = (n, warp, weft), detail.beside
+            add_to_lobe(look.tables, lights, k, bits, place, reflector, axes, wide, scratch)
         else:
             _add_to_lobe(stage, k, sample, reflector, (n, warp, weft), detail.beside, scratch)
     for c in range(3):
@@ -253,6 +269,10 @@ def _shade_tiles(stage, raster, backdrop, lines, out):
         np.ones(len(stage.lights.near)),
         stage.look.materials[:1].copy(),
         np.empty(1, RELIEF),
+        np.empty((2, CORNERS, 4)),
+        np.empty((2, CORNERS)),
+        np.empty((CELLS, 11)),
+        np.empty(MOST * MOST),
     )
     eye, brightest = stage.eye, 0.0
     between = np.sqrt(dot(row_of(eye.right), row_of(eye.right)))

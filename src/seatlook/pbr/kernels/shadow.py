@@ -79,7 +79,7 @@ def reaches(bvh, p, n, d, far, stack):
 
 
 @leaf()
-def _start(mesh, eye, f, i, j):
+def start_of(mesh, eye, f, i, j):
     """Start of a shadow ray for sample (i, j): (point, unit plane normal towards the eye, n)."""
     ray = ray_through(eye, i, j)
     b1, b2, _, plane = meet(mesh, eye, f, ray)
@@ -104,7 +104,7 @@ def _first_ray(bvh, mesh, eye, f, i, j, lights, k, stack):
 
     Returns a state, and how wide [rad], as the eye sees it, the edge of this shadow may be.
     """
-    p, plane, n = _start(mesh, eye, f, i, j)
+    p, plane, n = start_of(mesh, eye, f, i, j)
     l, far = to_middle(disc_at(lights, k, p))
     angle, c = angle_of(lights, k, p), dot(n, l)
     if c <= -angle:
@@ -182,7 +182,7 @@ def _octave(pixels):
 
 
 @njit(cache=True)
-def _count(wanted, total):
+def count_before(wanted, total):
     """Number of pixels wanted above and to the left of each corner, into ``total``."""
     for y in range(wanted.shape[0]):
         line = 0
@@ -192,7 +192,7 @@ def _count(wanted, total):
 
 
 @leaf()
-def _within(total, x, y, reach):
+def is_within(total, x, y, reach):
     """Whether a counted pixel lies within ``reach`` of this one."""
     y0, y1 = max(0, y - reach), min(total.shape[0] - 1, y + reach + 1)
     x0, x1 = max(0, x - reach), min(total.shape[1] - 1, x + reach + 1)
@@ -208,7 +208,7 @@ def _edges(state, octave, near):
     """
     shape = (state.shape[0] + 1, state.shape[1] + 1)
     lit, dark = np.zeros(shape, np.int32), np.zeros(shape, np.int32)
-    _count(state == _LIT, lit)
+    count_before(state == _LIT, lit)
     hidden = state == _HIDDEN
     near[:] = 0
     for k in range(16):
@@ -217,12 +217,12 @@ def _edges(state, octave, near):
             here |= state == _AWAY
         if not here.any():
             continue
-        _count(here, dark)
+        count_before(here, dark)
         reach = 1 << k
         for y in range(near.shape[0]):
             for x in range(near.shape[1]):
-                if _within(lit, x, y, reach) and _within(dark, x, y, reach):
-                    touch = k == 0 or (_within(lit, x, y, 1) and _within(dark, x, y, 1))
+                if is_within(lit, x, y, reach) and is_within(dark, x, y, reach):
+                    touch = k == 0 or (is_within(lit, x, y, 1) and is_within(dark, x, y, 1))
                     near[y, x] = max(near[y, x], 2 if touch else 1)
 
 
@@ -304,12 +304,12 @@ def _shares(bvh, mesh, eye, ids, lights, k, factor, rays, lines, state, near, ou
                 if ids[j, i] < 0:
                     continue
                 if edge and not known:
-                    start = _start(mesh, eye, ids[j, i], i, j)
+                    start = start_of(mesh, eye, ids[j, i], i, j)
                     edge = not _rim_agrees(bvh, lights, k, start, shift[0], here == _LIT, stack)
                 known = True
                 if not edge:
                     out[j, i] = 255 if here == _LIT else 0
                     continue
-                start = _start(mesh, eye, ids[j, i], i, j)
+                start = start_of(mesh, eye, ids[j, i], i, j)
                 share = _share_seen(bvh, lights, k, start, shift, q, step, rays * step, stack)
                 out[j, i] = np.rint(255.0 * share)

@@ -51,6 +51,17 @@ def saturation_luminance(ev: float) -> float:
     return float(1.2 * 2.0**ev)
 
 
+def exposure_of(luminance: float) -> float:
+    """EV100 at which a luminance [cd/m2] just becomes white.
+
+    Examples
+    --------
+    >>> round(exposure_of(saturation_luminance(7.5)), 6)
+    7.5
+    """
+    return float(np.log2(luminance / 1.2))
+
+
 def clamp(x: FloatArray) -> FloatArray:
     """Linear up to white, then white: what is compared keeps its contrast."""
     return np.clip(x, 0.0, 1.0)

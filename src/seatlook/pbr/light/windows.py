@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatlook.model import FloatArray, IntArray, Light, Rig
-from seatlook.model.light import BRIGHTEST
+from seatlook.model.light.lamps import BRIGHTEST
 from seatlook.pbr.light.panorama import directions, shrunk, solid_angles
 from seatlook.pbr.light.rig import LUMINANCE
 

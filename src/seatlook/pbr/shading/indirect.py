@@ -16,7 +16,7 @@ from seatlook.pbr.kernels.parts import in_parts
 from seatlook.pbr.kernels.specular_bounce import Reflection, Sources, Vertices
 from seatlook.pbr.kernels.stage import Look
 from seatlook.pbr.kernels.surface import mark_faces
-from seatlook.pbr.light.rig import pack_lights, sky_colour, sky_levels, sky_unhidden
+from seatlook.pbr.light.rig import pack_lights, patched, sky_colour, sky_levels, sky_unhidden
 from seatlook.pbr.quality import Quality
 from seatlook.pbr.shading.looking import Hits, Lookout, Memory
 from seatlook.pbr.shading.sharing import Neighbours, neighbours
@@ -74,7 +74,7 @@ class IndirectLight:
         # Of the sky below a seam, and where the foam is in sight, little is seen.
         diffuse[k:] = _HIDDEN_SKY * diffuse[: self.few].mean(axis=0)
         if level.bounces:
-            lights = pack_lights(rig)
+            lights = pack_lights(patched(rig))
             sources = Sources(mesh, look, lights, self._lit(lights), diffuse)
             sent = self._first_bounce(sources, seen, level)
             diffuse[:k] += self._again(seen, sent, look.materials, level.bounces - 1)
@@ -117,12 +117,16 @@ class IndirectLight:
 
     def _lit(self, lights: Lights) -> FloatArray:
         """Share of each light that reaches each vertex, (lights, n)."""
-        mesh = self.surface.mesh
-        few = np.empty((len(lights.near), self.few))
-        rays.lit(self.tree, self._points, mesh.normals, lights, few)
-        lit = np.zeros((len(few), len(mesh.vertices)))
-        lit[:, : self.surface.vertices] = self.surface.refined.spread(few.T).T
-        return lit
+
+        def make() -> FloatArray:
+            mesh = self.surface.mesh
+            few = np.empty((len(lights.near), self.few))
+            rays.lit(self.tree, self._points, mesh.normals, lights, few)
+            lit = np.zeros((len(few), len(mesh.vertices)))
+            lit[:, : self.surface.vertices] = self.surface.refined.spread(few.T).T
+            return lit
+
+        return np.asarray(self.cache(("lit", *_places(lights)), make))
 
     def _again(
         self, seen: Vertices, sent: FloatArray, materials: np.ndarray, times: int
@@ -219,10 +223,9 @@ class IndirectLight:
             return np.column_stack([_open(hits), light.T])
 
         key = ("lobes", camera_key(camera), level.factor, level.strata)
-        places = tuple(x.tobytes() for x in (lights.near, lights.vector, lights.size))
         memory = self.cache(key, lambda: Memory(self.surface.vertices))
         seen: Vertices = self.cache(
-            (*key, *places),
+            (*key, *_places(lights)),
             lambda: self.lookout.where_it_changes(
                 functools.partial(memory, look), shares, self._in_picture(ids)
             ),
@@ -239,6 +242,11 @@ class IndirectLight:
         wanted = np.zeros(self.surface.vertices, dtype=bool)
         wanted[mesh.faces[:m][seen]] = True
         return wanted
+
+
+def _places(lights: Lights) -> tuple[bytes, ...]:
+    """Where lights are, whatever they send."""
+    return tuple(x.tobytes() for x in (lights.near, lights.vector, lights.size, lights.sides))
 
 
 def camera_key(camera: Camera) -> Hashable:

@@ -10,6 +10,7 @@ from seatlook.errors import InputError, did_you_mean
 from seatlook.model import Appearance, Cover, FloatArray
 from seatlook.pbr.kernels import stage, stitch, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
+from seatlook.pbr.reflectance.instrument import resolved
 from seatlook.pbr.reflectance.measured import load_maps, map_sets, mean_albedo
 from seatlook.pbr.reflectance.relief import load_textures, texture_index
 from seatlook.pbr.reflectance.tables import load_tables
@@ -69,7 +70,8 @@ def pack_materials(appearances: list[Appearance]) -> np.ndarray:
     """Records (p,) of the kernels' material type; the albedo is the mean of what is seen."""
     out = np.zeros(len(appearances), dtype=MATERIAL)
     sets = map_sets(appearances)
-    for record, a in zip(out, appearances, strict=True):
+    for record, given in zip(out, appearances, strict=True):
+        a = resolved(given)
         for name in MATERIAL.names or ():
             if name not in ("texture", "maps"):
                 record[name] = getattr(a, name)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
+from seatlook.mesh.closest import nearest_segments
 from seatlook.model import Cover, FloatArray, IntArray, Thread
 from seatlook.pbr.kernels import stitch
 from seatlook.pbr.shading.subdivision import Refined, boundary_edges
@@ -90,7 +91,7 @@ def close(x: FloatArray, edges: SewnEdges) -> FloatArray:
             continue
         v = np.unique(np.concatenate([edges.start[own], edges.end[own]]))
         a, b = x[edges.start[other]], x[edges.end[other]]
-        near, t, _ = _nearest(x[v], a, b)
+        near, t, _ = nearest_segments(x[v], a, b)
         foot = a[near] + t[:, None] * (b[near] - a[near])
         close_by = np.linalg.norm(foot - x[v], axis=1) < _PARTNER
         moved[v[close_by]] = 0.5 * (x[v] + foot)[close_by]
@@ -129,7 +130,7 @@ def coordinates(uv: FloatArray, panel_of: IntArray, edges: SewnEdges) -> FloatAr
         own = edges.panel == panel
         v = np.flatnonzero(panel_of == panel)
         a, b = uv[edges.start[own]], uv[edges.end[own]]
-        near, t, distance = _nearest(uv[v], a, b)
+        near, t, distance = nearest_segments(uv[v], a, b)
         length = np.linalg.norm(b - a, axis=1)
         reached = distance < _REACH
         arc = edges.arc[own][near] + t * length[near]
@@ -162,20 +163,3 @@ def _arcs(edges: IntArray, length: FloatArray) -> FloatArray:
             run += length[k]
             k = starting.get(int(edges[k, 1]))
     return arcs
-
-
-def _nearest(
-    points: FloatArray, a: FloatArray, b: FloatArray
-) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Nearest of the segments a-b to each point: (index, parameter in [0, 1], distance)."""
-    count = min(4, len(a))
-    _, candidates = KDTree(0.5 * (a + b)).query(points, k=count)
-    candidates = np.asarray(candidates).reshape(len(points), count)
-    along = b[candidates] - a[candidates]
-    to = points[:, None] - a[candidates]
-    size = np.maximum((along**2).sum(axis=-1), 1e-30)
-    t = np.clip((to * along).sum(axis=-1) / size, 0.0, 1.0)
-    distance = np.linalg.norm(to - t[..., None] * along, axis=-1)
-    best = distance.argmin(axis=1)
-    row = np.arange(len(points))
-    return candidates[row, best], t[row, best], distance[row, best]

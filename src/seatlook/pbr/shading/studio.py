@@ -16,9 +16,9 @@ from seatlook.errors import InputError, RenderError
 from seatlook.model import Camera, Light, Rig, Solution, Thread
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.cache import Cache
-from seatlook.pbr.kernels import bvh, coherent, shade, shadow, stage, stitch, surface
+from seatlook.pbr.kernels import area_shadow, bvh, coherent, shade, shadow, stage, stitch, surface
 from seatlook.pbr.light.exposure import ev100
-from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_of
+from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_card, white_of
 from seatlook.pbr.light.windows import with_windows
 from seatlook.pbr.picture import Image
 from seatlook.pbr.quality import Quality, quality_named, quality_within
@@ -38,7 +38,9 @@ class Studio:
 
     Faces seen are cached per camera, shadows per camera and light, open sky per mesh: another
     material costs only its shading, another light only its shadows. With ``shading`` the normals
-    are those of another shape of the same cover; outlines and shadows stay.
+    are those of another shape of the same cover; outlines and shadows stay. With ``seen``, the
+    studio of a shape whose vertices lie on the same rays of the only camera that is used, faces
+    seen are taken from that.
 
     Raises
     ------
@@ -48,7 +50,12 @@ class Studio:
     """
 
     def __init__(
-        self, solution: Solution, *, shading: Solution | None = None, thread: Thread | None = None
+        self,
+        solution: Solution,
+        *,
+        shading: Solution | None = None,
+        thread: Thread | None = None,
+        seen: Studio | None = None,
     ) -> None:
         offscreen_backend()
         self.solution = solution
@@ -57,6 +64,9 @@ class Studio:
         if shading is not None:
             mesh = _with_normals(self.surface.mesh, drawn_surface(shading).mesh)
             self.surface = replace(self.surface, mesh=mesh)
+        self._seen = seen
+        if seen and not np.array_equal(seen.surface.mesh.faces, self.surface.mesh.faces):
+            self._seen = None
         self._cache = Cache()
 
     # Maps need neither: they are made for the first picture.
@@ -83,7 +93,7 @@ class Studio:
             level = quality_within(target_error)
         look = look_of(self.solution.cover, appearance, self.thread)
         ids = self.faces(camera, level.factor)
-        ev, white, lux = ev100(rig), white_of(rig), lux_at_seat(rig)
+        ev, white, card, lux = ev100(rig), white_of(rig), white_card(rig), lux_at_seat(rig)
         own, rig = len(rig.lights), with_windows(rig)
         visibility = self._visibility(rig, own, camera, level, ids)
         same = self._coherent(rig, camera, level, ids, visibility)
@@ -106,6 +116,7 @@ class Studio:
             ev100=ev,
             lux=MappingProxyType(lux),
             white=white,
+            card=card,
             camera=camera,
             cover=self._cover(camera, level.factor),
         )
@@ -129,6 +140,8 @@ class Studio:
         RenderError
             Nothing is in the picture.
         """
+        if self._seen is not None:
+            return self._seen.faces(camera, factor)
         key = ("faces", camera_key(camera), factor)
         return np.asarray(self._cache(key, lambda: self._draw(camera, factor)))
 
@@ -173,12 +186,21 @@ class Studio:
         pressed = np.where(front, _COMPRESSED, 0.0)
         np.copyto(ids, foam, where=foam_far < cover_far - pressed)
 
+    def shadows(self, rig: Rig, camera: Camera, quality: str) -> npt.NDArray[np.uint8]:
+        """Share of each light [1/255] seen by each sample of :meth:`faces`, (lights, h, w).
+
+        Windows that a panorama's bright regions are taken for come after the rig's own lights.
+        """
+        level = quality_named(quality)
+        ids = self.faces(camera, level.factor)
+        return self._visibility(with_windows(rig), len(rig.lights), camera, level, ids)
+
     def _visibility(
         self, rig: Rig, own: int, camera: Camera, level: Quality, ids: npt.NDArray[np.int32]
     ) -> npt.NDArray[np.uint8]:
-        """Share of each light [1/255] seen by each sample, (lights, h, w).
+        """Share of each light [1/255] seen by each sample, of a rectangle its cells as bits.
 
-        The first ``own`` are cached one by one, the windows of a panorama together.
+        (lights, h, w). The first ``own`` are cached one by one, the windows of a panorama together.
         """
 
         def seen(first: int, last: int) -> npt.NDArray[np.uint8]:
@@ -228,17 +250,12 @@ class Studio:
     ) -> None:
         if level.rays == 0:
             return
-        shadow.shadows(
-            self._bvh,
-            self.surface.mesh,
-            eye_of(camera, level.factor),
-            ids,
-            pack_lights(rig),
-            k,
-            level.factor,
-            level.rays,
-            share,
-        )
+        eye = eye_of(camera, level.factor)
+        seen = (self._bvh, self.surface.mesh, eye, ids, pack_lights(rig), k, level.factor)
+        if rig.lights[k].is_rectangle:
+            area_shadow.cells_seen(*seen, share)
+        else:
+            shadow.shadows(*seen, level.rays, share)
 
 
 def render(
@@ -343,4 +360,5 @@ def _check(
 
 
 def _light_key(light: Light) -> Hashable:
-    return (light.near, light.vector.tobytes(), light.size)
+    place = (light.near, light.vector.tobytes(), light.size)
+    return (*place, light.sides.tobytes(), light.two_sided)

@@ -1,4 +1,4 @@
-"""Lights, rigs and cameras in photometric units."""
+"""Lights and rigs in photometric units."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model._check import FARTHEST, FloatArray, floats, in_range, positive
+from seatlook.model.colour import TO_SRGB
 
 # Linear sRGB of direct sun (ASTM G173, 5233 K), scaled so that its luminance is 1.
 SUN_COLOUR = (1.159, 0.974, 0.788)
-DISTANCE = 1.1  # m, of the demo seat
 BRIGHTEST = 1e9  # lux, cd, cd/m2; ten thousand suns
-_RADIUS = 0.349  # m, of the sphere around the demo's foam
-_ROUND = 2  # digits of the ratio to it: 1 for the demo's foam below a cover of any thickness
-_MARGIN = 1.01  # room around a seat, from which the sphere's distance is too short
-_ROOM = 1.06  # room that it then gets: a cover is larger than its foam
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Light:
-    """One light: far away (a direction) or near (a position).
+    """One light: far away (a direction) or near (a position), there a bulb or a rectangle.
 
     Parameters
     ----------
-    intensity : float           [lux] on a facing plane when far, [cd] when near
+    intensity : float           [lux] on a facing plane when far, [cd] when near: of a bulb in every
+        direction, of a rectangle before its middle
     vector : (3,) float64       unit vector towards the light when far, position [m] when near
     near : bool
     colour : (3,) float64       linear sRGB of luminance 1
     size : float                angular diameter [rad] when far, radius [m] when near
+    sides : (2, 3) float64      halves [m] of a rectangle's sides, from its middle, at right angles,
+        the longer first; it shines towards their vector product. All 0: a disc or a bulb
+    two_sided : bool            whether a rectangle shines backwards as well
     """
 
     name: str
@@ -40,13 +40,31 @@ class Light:
     near: bool
     colour: FloatArray = field(default_factory=lambda: np.ones(3))
     size: float = 0.0
+    sides: FloatArray = field(default_factory=lambda: np.zeros((2, 3)))
+    two_sided: bool = False
 
     def __post_init__(self) -> None:
         floats(self, "vector", 3, most=FARTHEST)
+        floats(self, "sides", 2, 3, most=FARTHEST)
         floats(self, "colour", 3)
         positive(self, "intensity")
         in_range(self, "intensity", 0.0, BRIGHTEST)
         in_range(self, "size", 0.0, 3.2)
+        long, short = np.linalg.norm(self.sides, axis=1)
+        slant = abs(float(self.sides[0] @ self.sides[1]))
+        if long > 0 and not (
+            self.near and 1.000001 * long >= short > 0 and slant <= 1e-9 * long**2
+        ):
+            raise InputError.single(
+                "Light.sides",
+                got=self.sides.tolist(),
+                expected="sides at right angles of a near light, the longer first",
+            )
+
+    @property
+    def is_rectangle(self) -> bool:
+        """Whether this is a rectangle, not a disc or a bulb."""
+        return bool(self.sides.any())
 
 
 def direction(azimuth_deg: float, elevation_deg: float) -> FloatArray:
@@ -140,7 +158,149 @@ def booth(
     )
 
 
-LIGHTS: dict[str, Callable[..., Light]] = {"sun": sun, "bulb": bulb, "booth": booth}
+def rectangle(
+    *,
+    lumen: float = 4000.0,
+    position_mm: tuple[float, float, float],
+    target_mm: tuple[float, float, float] = (0.0, 0.0, 100.0),
+    along: tuple[float, float, float] = (1.0, 0.0, 0.0),
+    size_mm: tuple[float, float] = (600.0, 600.0),
+    temperature_k: float = 5000.0,
+    name: str = "rectangle",
+) -> Light:
+    """Even panel that faces ``target_mm``, equally bright from every side (Lambert).
+
+    ``along`` is where its first side points, as far as it lies across the line to the target.
+
+    Examples
+    --------
+    >>> panel = rectangle(lumen=np.pi, position_mm=(0, 0, 900), size_mm=(300, 400))
+    >>> round(panel.intensity, 6), np.abs(panel.sides).round(3).tolist()
+    (1.0, [[0.0, 0.2, 0.0], [0.15, 0.0, 0.0]])
+    """
+    where = np.asarray(position_mm, dtype=float) / 1000
+    ahead = np.asarray(target_mm, dtype=float) / 1000 - where
+    ahead = ahead / max(float(np.linalg.norm(ahead)), 1e-12)
+    first = np.asarray(along, dtype=float)
+    first = first - (first @ ahead) * ahead
+    if not np.linalg.norm(ahead) > 0.5:
+        got = np.asarray(target_mm).tolist()
+        raise InputError.single("target_mm", got=got, expected="not where the light is")
+    if not np.linalg.norm(first) > 1e-6:
+        got = np.asarray(along).tolist()
+        expected = "a direction across the line to the target"
+        raise InputError.single("along", got=got, expected=expected)
+    size = np.asarray(size_mm, dtype=float)
+    if not ((size >= 1.0) & (size <= 1000.0 * FARTHEST)).all():
+        raise InputError.single("size_mm", got=size.tolist(), expected="two sides of 1 to 1e+06")
+    first = first / np.linalg.norm(first)
+    sides = size[:, None] * np.array([first, np.cross(ahead, first)]) / 2000
+    return Light(
+        name=name,
+        intensity=lumen / np.pi,
+        vector=where,
+        near=True,
+        colour=planck_colour(temperature_k),
+        sides=np.array([sides[1], -sides[0]]) if size[1] > size[0] else sides,
+    )
+
+
+def two_sided_rectangle(
+    *,
+    lumen: float = 4000.0,
+    position_mm: tuple[float, float, float],
+    target_mm: tuple[float, float, float] = (0.0, 0.0, 100.0),
+    along: tuple[float, float, float] = (1.0, 0.0, 0.0),
+    size_mm: tuple[float, float] = (600.0, 600.0),
+    temperature_k: float = 5000.0,
+    name: str = "rectangle",
+) -> Light:
+    """Rectangle that sends half of its light backwards."""
+    forward = rectangle(
+        lumen=lumen / 2,
+        position_mm=position_mm,
+        target_mm=target_mm,
+        along=along,
+        size_mm=size_mm,
+        temperature_k=temperature_k,
+        name=name,
+    )
+    return replace(forward, two_sided=True)
+
+
+def strip(
+    *,
+    lumen: float = 4000.0,
+    position_mm: tuple[float, float, float],
+    target_mm: tuple[float, float, float] = (0.0, 0.0, 100.0),
+    along: tuple[float, float, float] = (1.0, 0.0, 0.0),
+    size_mm: tuple[float, float] = (1500.0, 100.0),
+    temperature_k: float = 5000.0,
+    name: str = "strip",
+) -> Light:
+    """Long narrow panel, as over an inspection table: a rectangle of another size."""
+    return rectangle(
+        lumen=lumen,
+        position_mm=position_mm,
+        target_mm=target_mm,
+        along=along,
+        size_mm=size_mm,
+        temperature_k=temperature_k,
+        name=name,
+    )
+
+
+# Elevations [deg] of the strips of a tunnel, across its axis.
+_TUNNEL = (20.0, 55.0, 90.0, 125.0, 160.0)
+
+
+def tunnel(
+    *,
+    lumen: float = 20_000.0,
+    radius_mm: float = 1200.0,
+    middle_mm: tuple[float, float, float] = (0.0, 0.0, 100.0),
+    azimuth_deg: float = 0.0,
+    size_mm: tuple[float, float] = (1500.0, 100.0),
+    temperature_k: float = 5000.0,
+    name: str = "tunnel",
+) -> tuple[Light, ...]:
+    """Five strips on an arch over the seat, along ``azimuth_deg``; ``lumen`` of all together.
+
+    Examples
+    --------
+    >>> [light.vector[[0, 2]].round(2).tolist() for light in tunnel()][:2]
+    [[1.13, 0.51], [0.69, 1.08]]
+    """
+    a, b, c = direction(azimuth_deg, 0.0).tolist()
+    lights = []
+    for number, elevation in enumerate(_TUNNEL, 1):
+        # From one side over the top to the other.
+        beside, up = np.cos(np.radians(elevation)), np.sin(np.radians(elevation))
+        away = beside * direction(azimuth_deg + 90.0, 0.0) + [0.0, 0.0, up]
+        x, y, z = (np.asarray(middle_mm, dtype=float) + radius_mm * away).tolist()
+        lights.append(
+            strip(
+                lumen=lumen / len(_TUNNEL),
+                position_mm=(x, y, z),
+                target_mm=middle_mm,
+                along=(a, b, c),
+                size_mm=size_mm,
+                temperature_k=temperature_k,
+                name=f"{name} {number}",
+            )
+        )
+    return tuple(lights)
+
+
+LIGHTS: dict[str, Callable[..., Light | tuple[Light, ...]]] = {
+    "sun": sun,
+    "bulb": bulb,
+    "booth": booth,
+    "strip": strip,
+    "rectangle": rectangle,
+    "two_sided_rectangle": two_sided_rectangle,
+    "tunnel": tunnel,
+}
 
 
 def planck_colour(temperature_k: float) -> FloatArray:
@@ -166,15 +326,8 @@ def planck_colour(temperature_k: float) -> FloatArray:
 
 def linear_srgb(x: float, y: float) -> FloatArray:
     """Linear sRGB (3,) of luminance 1 of a chromaticity (IEC 61966-2-1)."""
-    to_rgb = np.array(
-        [
-            [3.2404542, -1.5371385, -0.4985314],
-            [-0.9692660, 1.8760108, 0.0415560],
-            [0.0556434, -0.2040259, 1.0572252],
-        ]
-    )
     # Below about 1900 K blue leaves the sRGB triangle; a display cannot show it.
-    return np.asarray(np.maximum(to_rgb @ np.array([x / y, 1.0, (1 - x - y) / y]), 0.0))
+    return np.asarray(np.maximum(TO_SRGB @ np.array([x / y, 1.0, (1 - x - y) / y]), 0.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -237,155 +390,3 @@ def turned(rig: Rig, azimuth_deg: float) -> Rig:
     whole = int(np.floor(steps))
     low, high = (np.roll(rig.panorama, whole + k, axis=1) for k in (0, 1))
     return replace(rig, panorama=low + (steps - whole) * (high - low))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Camera:
-    """A perspective camera.
-
-    Parameters
-    ----------
-    position, target, up : (3,) float64 [m]
-    vertical_fov_deg : float
-    size : (width, height) in pixels
-    """
-
-    name: str
-    position: FloatArray
-    target: FloatArray
-    up: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
-    vertical_fov_deg: float = 16.2
-    size: tuple[int, int] = (1280, 720)
-
-    def __post_init__(self) -> None:
-        for name in ("position", "target", "up"):
-            floats(self, name, 3, most=FARTHEST)
-        if not np.linalg.norm(self.target - self.position) > 1e-3:
-            raise InputError.single(
-                "Camera.target", got="the camera's own position", expected="a place away from it"
-            )
-        if not np.linalg.norm(self.up) > 1e-6:
-            raise InputError.single("Camera.up", got=self.up.tolist(), expected="a direction")
-        in_range(self, "vertical_fov_deg", 1.0, 120.0)
-        if min(self.size) < 1:
-            raise InputError.single("Camera.size", got=self.size, expected="at least 1 x 1 pixels")
-
-    @property
-    def pixels_per_degree(self) -> float:
-        """Mean over the horizontal field of view."""
-        half = np.radians(self.vertical_fov_deg) / 2
-        horizontal = 2 * np.arctan(np.tan(half) * self.size[0] / self.size[1])
-        return float(self.size[0] / np.degrees(horizontal))
-
-    def pixel(self, point: FloatArray) -> tuple[float, float]:
-        """Where a point (3,) [m] in front of the camera is seen: (x, y) from the top left.
-
-        Examples
-        --------
-        >>> side = Camera(name="side", position=np.array([1.0, 0, 0]), target=np.zeros(3))
-        >>> side.pixel(np.zeros(3))
-        (640.0, 360.0)
-        """
-        ((x, y),), _ = self.pixels(np.asarray(point)[None])
-        return float(x), float(y)
-
-    def pixels(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Where points (k, 3) [m] in front of the camera are seen (k, 2), and how deep (k,) [m]."""
-        ahead = self.target - self.position
-        ahead = ahead / np.linalg.norm(ahead)
-        right = np.cross(ahead, self.up)
-        right = right / np.linalg.norm(right)
-        away = points - self.position
-        focal = self.size[1] / 2 / np.tan(np.radians(self.vertical_fov_deg) / 2)
-        depth = away @ ahead
-        x = self.size[0] / 2 + focal * (away @ right) / depth
-        y = self.size[1] / 2 - focal * (away @ np.cross(right, ahead)) / depth
-        return np.column_stack([x, y]), np.asarray(depth)
-
-
-def named_view(
-    name: str,
-    *,
-    target: FloatArray,
-    size: tuple[int, int] = (1280, 720),
-    distance: float = DISTANCE,
-) -> Camera:
-    """Camera of a named view, looking at ``target`` [m] from ``distance`` [m].
-
-    Examples
-    --------
-    >>> round(named_view("top", target=np.zeros(3)).pixels_per_degree)
-    45
-    """
-    if name not in VIEWS:
-        raise InputError.single("camera.view", got=name, expected=f"one of {', '.join(VIEWS)}")
-    azimuth, elevation, share = VIEWS[name]
-    up = np.array([0.0, 1.0, 0.0]) if elevation > 89 else np.array([0.0, 0.0, 1.0])
-    return Camera(
-        name=name,
-        position=np.asarray(target) + distance * share * direction(azimuth, elevation),
-        target=target,
-        up=up,
-        size=size,
-    )
-
-
-def framed_view(name: str, points: FloatArray, *, size: tuple[int, int] = (1280, 720)) -> Camera:
-    """Camera of a named view that shows all of ``points`` (n, 3) [m], looking at their middle.
-
-    The distance goes with the radius of the sphere around the middle of their bounding box.
-    A long or tall seat that would still reach out of the picture is seen from farther away;
-    ``detail`` shows a part and is left as it is.
-
-    Raises
-    ------
-    InputError
-        An unknown view.
-
-    Examples
-    --------
-    >>> corners = np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
-    >>> views = [framed_view("top", scale * corners) for scale in (1.0, 2.0)]
-    >>> [round(float(view.position[2]), 2) for view in views]
-    [10.91, 21.85]
-    """
-    middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    distance = sphere_distance(points)
-    camera = named_view(name, target=middle, size=size, distance=distance)
-    reach, share = _MARGIN * _whole(camera, points), VIEWS[name][2]
-    if share < 1.0 or reach <= distance * share:
-        return camera
-    return named_view(name, target=middle, size=size, distance=_ROOM / _MARGIN * reach / share)
-
-
-def sphere_distance(points: FloatArray) -> float:
-    """Viewing distance [m], in the ratio of the sphere around ``points`` (n, 3) to the demo's."""
-    middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    radius = float(np.linalg.norm(points - middle, axis=1).max())
-    return DISTANCE * max(round(radius / _RADIUS, _ROUND), 10.0**-_ROUND)
-
-
-def _whole(camera: Camera, points: FloatArray) -> float:
-    """Least distance [m] from the target at which the camera sees all points."""
-    toward = camera.position - camera.target
-    toward = toward / np.linalg.norm(toward)
-    right = np.cross(camera.up, toward)
-    right = right / np.linalg.norm(right)
-    upward = np.cross(toward, right)
-    half = np.tan(np.radians(camera.vertical_fov_deg) / 2)
-    away = points - camera.target
-    aside = np.abs(away @ right) / (half * camera.size[0] / camera.size[1])
-    above = np.abs(away @ upward) / half
-    return float((away @ toward + np.maximum(aside, above)).max())
-
-
-# azimuth, elevation [deg], share of the viewing distance
-VIEWS: MappingProxyType[str, tuple[float, float, float]] = MappingProxyType(
-    {
-        "driver_door": (75.0, 38.0, 1.75),
-        "front_34": (35.0, 40.0, 1.9),
-        "rear_34": (215.0, 40.0, 1.9),
-        "top": (0.0, 90.0, 2.0),
-        "detail": (35.0, 45.0, 0.6),
-    }
-)

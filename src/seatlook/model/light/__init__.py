@@ -1,0 +1,1 @@
+"""What a cover is lit by and looked at from."""
