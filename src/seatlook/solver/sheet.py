@@ -109,8 +109,8 @@ class SheetSolution:
     converged : bool            residual within the tolerance, and stable
     residual : float [1]        largest force out of balance over the mean elastic nodal force
     energy : (k,) float64 [J]   potential after every accepted step of the last load step
-    peaks : (m, 2) float64 [1]  largest warp and weft strains so far, None if the fabric unloads the
-        way it was loaded
+    peaks : (m, 2 or 3) float64 [1]  largest warp and weft strains so far, and the shear at which
+        friction rests where there is some; None if the fabric unloads the way it was loaded
     """
 
     positions: FloatArray
@@ -147,7 +147,7 @@ def solve_sheet(
     Parameters
     ----------
     start : (n, 3) float64 [m], or an earlier solution of the sheet, with the history of its strains
-        where the fabric has unloading curves; the flat sheet if not given
+        where the fabric does not unload as it was loaded; the flat sheet if not given
     strict : raise instead of returning what has not converged
 
     Raises

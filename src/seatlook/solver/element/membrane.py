@@ -13,6 +13,7 @@ from seatlook.solver.element.constitutive import constitutive_tables, typical_st
 from seatlook.solver.element.curvature import Curvature
 from seatlook.solver.element.edgeslope import Edges, tangent_matrix
 from seatlook.solver.element.unloading import Unloading
+from seatlook.solver.element.yarn_friction import YarnFriction
 from seatlook.solver.kernels import membrane as kernels
 from seatlook.solver.kernels.curvature import along_edges
 
@@ -36,8 +37,8 @@ class Membrane:
     falls to ``compression_ratio`` times its first value over 2e-3 of strain; the coupling
     ``C12 ((1 - c) p(E11) p(E22) + c E11 E22)``, p = e^2 / (e + 2e-3) in tension and 0 else, keeps
     the same share c, so that psi stays convex and c = 1 is the linear orthotropic fabric.
-    Fabrics with unloading curves have a history, see ``Unloading``; ``wear`` adds to it between
-    steps.
+    Fabrics that lose work have a history, see ``Unloading`` and ``YarnFriction``; ``wear`` adds to
+    it between steps.
 
     Parameters
     ----------
@@ -67,9 +68,12 @@ class Membrane:
             [[f.poisson * f.weft.stiffness[0], f.compression_ratio] for f in fabrics]
         )
         # None costs nothing: most fabrics go back the way they came.
-        self._unloading = None
+        self._unloading = self._friction = None
         if any(f.warp_unloading or f.weft_unloading for f in fabrics):
             self._unloading = Unloading(fabric, fabrics, self._constitutive)
+        if any(f.shear_hysteresis for f in fabrics):
+            self._friction = YarnFriction(fabric, fabrics)
+        self._losses = [term for term in (self._unloading, self._friction) if term is not None]
         self._laplacian = self._plane_laplacian(count, fabrics)
         self._bow = np.empty((len(edges.ends), 3))
         self._edge_strain = np.empty(len(edges.ends))
@@ -80,19 +84,33 @@ class Membrane:
 
     @property
     def peaks(self) -> FloatArray | None:
-        """Largest warp and weft strains so far, (m, 2), -inf if never stretched; None if unkept."""
-        return None if self._unloading is None else self._unloading.peaks
+        """What is remembered of the strains, (m, 2) or (m, 3) [1]; None if nothing is.
+
+        Largest warp and weft strains so far, -inf if never stretched, and where shear has friction
+        the shear at which that rests.
+        """
+        if not self._losses:
+            return None
+        peaks = np.full((len(self._area), 2), -np.inf)
+        if self._unloading is not None:
+            peaks = self._unloading.peaks
+        if self._friction is None:
+            return peaks
+        return np.column_stack([peaks, self._friction.rest])
 
     def wear(self, x: FloatArray) -> None:
         """Take the strains at ``x`` into the history; energy and forces there do not change."""
-        if self._unloading is not None:
+        if self._losses:
             self._deform(x)
-            self._unloading.wear(self._E)
+            for term in self._losses:
+                term.wear(self._E)
 
     def remember(self, peaks: FloatArray) -> None:
         """Take over the ``peaks`` of an earlier state of the same mesh."""
         if self._unloading is not None:
-            self._unloading.wear(peaks)
+            self._unloading.wear(peaks[:, :2])
+        if self._friction is not None and peaks.shape[1] > 2:
+            self._friction.remember(peaks[:, 2])
 
     def strain(self, x: FloatArray) -> FloatArray:
         """Return the Green strain (E11, E22, 2 E12) of every triangle, (m, 3) [1]."""
@@ -111,8 +129,8 @@ class Membrane:
         energy = kernels.tensions(
             self._E, self._area, self._fabric, *self._constitutive, self._constants, S
         )
-        if self._unloading is not None:
-            energy += self._unloading.tensions(self._E, self._area, S)
+        for term in self._losses:
+            energy += term.tensions(self._E, self._area, S)
         self._pull_edges(S)
         kernels.forces(
             x, self._pull, self._edges.ends, self._edges.length, *self._rows, self._bow, gradient
@@ -182,8 +200,8 @@ class Membrane:
             self._constants,
             material,
         )
-        if self._unloading is not None:
-            self._unloading.stiffness(self._E, natural, self._area, material)
+        for term in self._losses:
+            term.stiffness(self._E, natural, self._area, material)
         return material
 
     def _pulls(self, definite: bool) -> FloatArray:
@@ -223,8 +241,8 @@ class Membrane:
         S = np.asarray(
             kernels.stresses(self._E, self._fabric, *self._constitutive, self._constants)
         )
-        if self._unloading is not None:
-            self._unloading.stress(self._E, S)
+        for term in self._losses:
+            term.stress(self._E, S)
         return S
 
     def _deform(self, x: FloatArray) -> None:

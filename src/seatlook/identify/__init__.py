@@ -1,0 +1,1 @@
+"""A material of the curves that a laboratory measured."""

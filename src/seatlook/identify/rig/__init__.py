@@ -1,0 +1,1 @@
+"""The virtual test rig, and every test once more in it."""
