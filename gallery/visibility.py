@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +15,11 @@ from seatlook import io
 from seatlook.model import Camera, Scene, Solution
 from seatlook.visibility.heights import reference_rig
 from seatlook.visibility.light_search import RigAt, bulb_rig, search_light, sun_rig
-from seatlook.visibility.view import View
+from seatlook.visibility.view import Sampling, View
 
 BULBS = {"front": (0.0, 45.0), "left": (90.0, 45.0), "rear": (180.0, 45.0), "right": (270.0, 45.0)}
 RAKING_DEG = 20.0
-SEARCHED = (320, 180)  # pixels of a search, at the same angle of view
+SEARCHED = Sampling("draft", 11.25)  # a sixteenth of the pixels of a score
 
 
 def main(folder: Path) -> None:
@@ -54,7 +53,7 @@ def by_texture(view: View, scene: Scene) -> None:
 
 def by_search(scene: Scene, solution: Solution, camera: Camera) -> None:
     """Name the worst light of every texture."""
-    view = View(solution, replace(camera, size=SEARCHED), quality="draft")
+    view = View(solution, camera, sampling=SEARCHED)
     kinds: Mapping[str, RigAt] = {"sun": sun_rig(), "bulb": bulb_rig(camera)}
     row("worst light", "azimuth", "elevation", "VWI", "lights")
     for texture, looks in scene.textures.items():

@@ -103,7 +103,7 @@ def test_a_questionnaire_names_all_that_is_wrong():
         )
     assert str(caught.value).splitlines() == [
         "Questionnaire.stimuli: got 2 named 'a', expected one",
-        "Questionnaire.questions: got 'beauty', expected one of wrinkles, preference",
+        "Questionnaire.questions: got 'beauty', expected one of seen, wrinkles, preference",
         "Questionnaire.stimuli: got 2, expected 3 or more",
         "Questionnaire.repeat_share: got 2.0, expected 0 to 1",
     ]

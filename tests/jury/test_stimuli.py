@@ -12,7 +12,6 @@ from seatlook.errors import InputError
 from seatlook.jury.calibration import MEASURES
 from seatlook.jury.stimuli import CATCH_VWI, Stimuli, draw_stimuli
 from seatlook.visibility.view import View, luminance
-from seatlook.visibility.vwi import score
 from support import scenes
 from support.seen.covers import BLACK, RIG, ROUGH
 from visibility.test_view import view, wrinkled
@@ -44,11 +43,7 @@ def test_every_cell_of_every_cover_has_a_code_of_its_own(stimuli):
 def test_a_catch_pair_is_drawn_once_and_cannot_be_mistaken(stimuli, view):
     assert 1 <= len(stimuli.catches) <= 2
     for pair in stimuli.catches:
-        result = score(
-            *(luminance(one.picture) for one in pair),
-            pixels_per_degree=view.camera.pixels_per_degree,
-            mask=view.region.mask,
-        )
+        result = view.score(*(luminance(one.picture) for one in pair), view.region)
         assert result.vwi >= CATCH_VWI
 
 

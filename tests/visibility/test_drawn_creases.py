@@ -51,28 +51,6 @@ def test_a_highlight_shows_dark_and_glossy_first(lit, record_property):
     assert black > 1.1 * bright > 1.21 * rough
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "black glossy",
-        pytest.param(
-            "bright glossy",
-            marks=pytest.mark.xfail(
-                strict=True, reason="22 % less: a thousandth of its day is still 4 cd/m2"
-            ),
-        ),
-        "bright rough",
-    ],
-)
-def test_daylight_does_not_matter_but_dusk_does(lit, name, record_property):
-    test, reference = lit[name]
-    day = vwi(test, reference)
-    assert vwi(10 * test, 10 * reference) == pytest.approx(day, rel=0.05)
-    dusk = vwi(1e-3 * test, 1e-3 * reference) / day
-    record_property("dusk_over_day", dusk)
-    assert dusk < 0.7
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_half_the_pixels_at_half_the_pixels_per_degree(lit, name, record_property):
     halves = [p.reshape(PIXELS // 2, 2, PIXELS // 2, 2).mean(axis=(1, 3)) for p in lit[name]]

@@ -1,6 +1,8 @@
-"""Contrast sensitivity against Barten's full model, and the table against the formula."""
+"""Contrast sensitivity by hand and by what is known of it, and the table against the formula."""
 
+import csv
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,65 +10,92 @@ import pytest
 from seatlook.errors import InputError
 from seatlook.visibility.kernels.band import sensitivity
 from seatlook.visibility.observer import (
+    FITTING,
     LOWEST_OCTAVE,
     NODES_PER_OCTAVE,
+    OBSERVER,
+    TOO_LONG,
+    VISIBLE,
     Observer,
     contrast_sensitivity,
     sensitivity_table,
 )
 
-
-def barten_1999(u, L, X0=10.0):
-    """Barten's full model (Contrast Sensitivity of the Human Eye, 1999, eq. 3.26), both eyes."""
-    d = 5 - 3 * np.tanh(0.4 * np.log10(L * X0**2 / 40**2))
-    sigma = np.hypot(0.5, 0.08 * d) / 60
-    E = np.pi * d**2 / 4 * L * (1 - (d / 9.7) ** 2 + (d / 12.4) ** 4)
-    optics = np.exp(-2 * (np.pi * sigma * u) ** 2)
-    photons = 1 / (0.03 * 1.2274e6 * E)
-    lateral = 3e-8 / -np.expm1(-((u / 7.0) ** 2))
-    spatial = 1 / X0**2 + 1 / 12.0**2 + (u / 15.0) ** 2
-    return optics / 3 / np.sqrt(2 / 0.1 * spatial * (photons + lateral))
-
-
-def test_the_closed_formula_follows_the_full_model():
-    """The closed form is a fit; where wrinkles are seen it stays within a fifth of the model."""
-    u = np.geomspace(0.5, 16, 21)
-    L = np.geomspace(1, 1000, 13)[:, None]
-    ratio = contrast_sensitivity(u, L) / barten_1999(u, L)
-    assert ratio.min() > 0.8
-    assert ratio.max() < 1.2
-
-
-@pytest.mark.parametrize("luminance", [0.1, 1.0, 10.0, 100.0, 1000.0])
-def test_the_peak_lies_where_the_full_model_has_it(luminance):
-    u = np.geomspace(0.2, 30, 600)
-    closed, full = contrast_sensitivity(u, luminance), barten_1999(u, luminance)
-    assert u[closed.argmax()] == pytest.approx(u[full.argmax()], rel=0.1)
+ROOT = Path(__file__).parents[2]
 
 
 def test_by_hand():
-    # f = 2, L = 10, X0 = 10: optics exp(-0.0064 * 11^0.08), summation 1 + 1.44 + 2.56,
-    # noise 63 / 10^0.83 + 1 / (1 - exp(-0.08))
-    expected = 5200 * np.exp(-0.0064 * 11**0.08) / np.sqrt(5 * (63 / 10**0.83 + 13.00666))
-    assert contrast_sensitivity(2.0, 10.0) == pytest.approx(expected, rel=1e-6)
+    # f = 4 on 100 cd/m2: the peak lies at 1.78119 / 1.915718^0.256682 = 1.5074, 0.42385 decades
+    # below f, and is 56.4947 / 1.0754726^0.144532 = 55.9042 high; the field that is summed over
+    # is 157.103 / (1 + 5.69539^2) = 4.69854 deg2.
+    expected = 55.9042 * 10**-0.179625 * 4 * np.sqrt(4.69854 / (1 + 4.69854))
+    assert contrast_sensitivity(4.0, 100.0, area_deg2=1.0) == pytest.approx(expected, rel=1e-3)
+
+
+def test_small_fields_sum_by_the_root_of_their_area_and_large_ones_not_at_all():
+    small, twice = (contrast_sensitivity(4.0, 100.0, area_deg2=a) for a in (1e-4, 2e-4))
+    large, more = (contrast_sensitivity(4.0, 100.0, area_deg2=a) for a in (1e4, 2e4))
+    assert twice / small == pytest.approx(np.sqrt(2), rel=1e-3)
+    assert more / large == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("frequency", [0.5, 1.0, 2.0, 4.0, 6.0])
+def test_noon_blinds_by_what_observers_lost(frequency):
+    """From 200 to 7,000 cd/m2 observers lost 3.6 to 7.2 dB."""
+    lamp, noon = contrast_sensitivity(frequency, np.array([200.0, 7000.0]), area_deg2=1.0)
+    assert 3.0 < 20 * np.log10(lamp / noon) < 8.0
+
+
+def test_dusk_blinds_the_fine_more_than_the_coarse():
+    """From 20 to 0.02 cd/m2, by the square root of the light at most (de Vries and Rose)."""
+    coarse, fine = (
+        contrast_sensitivity(f, 20.0, area_deg2=1.0) / contrast_sensitivity(f, 0.02, area_deg2=1.0)
+        for f in (0.5, 8.0)
+    )
+    assert 2 < coarse < fine / 4
+
+
+def test_beyond_what_was_measured_it_stays():
+    ends = contrast_sensitivity(2.0, np.array([1e-5, 1e-3, 1e4, 1e6]), area_deg2=1.0)
+    assert ends[0] == ends[1]
+    assert ends[2] == ends[3]
 
 
 @pytest.mark.parametrize("frequency", [0.25, 4.0, 16.0])
 def test_the_table_is_the_formula(frequency):
-    table = sensitivity_table(frequency, 10.0)
-    L = np.geomspace(1e-3, 1e6, 2000)
+    table = sensitivity_table(frequency, OBSERVER)
+    L = np.geomspace(1.1e-3, 1e6, 2000)
     looked_up = [sensitivity(value, table, LOWEST_OCTAVE, NODES_PER_OCTAVE) for value in L]
-    np.testing.assert_allclose(looked_up, contrast_sensitivity(frequency, L), rtol=3e-4)
+    formula = contrast_sensitivity(frequency, L, area_deg2=OBSERVER.area_deg2)
+    miss = np.abs(np.array(looked_up) / (OBSERVER.gain * formula) - 1)
+    assert miss.max() < 2e-3
+    # It is straight between two nodes, also across the ends of what was measured.
+    node = 2 ** (1 / NODES_PER_OCTAVE)
+    ends = [(end / node < L) & (node * end > L) for end in (1e-3, 1e4)]
+    assert miss[~np.any(ends, axis=0)].max() < 3e-4
 
 
 def test_the_table_ends_flat():
-    table = sensitivity_table(4.0, 10.0)
+    table = sensitivity_table(4.0, OBSERVER)
     low, high = (sensitivity(v, table, LOWEST_OCTAVE, NODES_PER_OCTAVE) for v in (1e-9, 1e12))
     assert low == pytest.approx(table[0])
     assert high == pytest.approx(table[-1])
 
 
-def test_constants_are_marked_and_checked():
-    assert not Observer.calibrated
-    with pytest.raises(InputError, match=r"masking_root: got 0, expected a number above 0"):
-        dataclasses.replace(Observer(), masking_root=0)
+def test_constants_say_what_they_come_from_and_are_checked():
+    assert Observer.calibrated == "on detection and masking of published observers"
+    with pytest.raises(InputError, match=r"gain: got 0, expected a number above 0"):
+        dataclasses.replace(Observer(), gain=0)
+
+
+@pytest.mark.parametrize(("state", "yardstick"), [("good", FITTING), ("spoiled", TOO_LONG)])
+def test_the_yardsticks_are_what_was_measured(state, yardstick):
+    with (ROOT / "docs/charts/visible_faults.csv").open(encoding="utf-8") as file:
+        vwi = [
+            float(row["zone_vwi"])
+            for row in csv.DictReader(file)
+            if (row["shape"], row["state"]) == ("cushion", state)
+        ]
+    assert len(vwi) == 9
+    assert yardstick == tuple(float(f"{end:.2g}") for end in (min(vwi), max(vwi)))
+    assert FITTING[1] < VISIBLE < TOO_LONG[0]

@@ -6,7 +6,7 @@ import pytest
 from seatlook.visibility.light_search import bulb_rig, hemisphere, search_light, sun_rig
 from seatlook.visibility.view import View
 from support.reference.lit_sheets import sheet
-from support.seen.covers import BLACK, ROUGH, oblique, wave, zoned
+from support.seen.covers import BLACK, COARSE, ROUGH, oblique, wave, zoned
 
 pytestmark = [pytest.mark.validate, pytest.mark.render]
 
@@ -18,7 +18,11 @@ def creases(x, y):
 
 @pytest.fixture(scope="module")
 def view():
-    return View(zoned(sheet(creases, steps=48)), oblique((160, 120)), quality="draft")
+    return View(
+        zoned(sheet(creases, steps=48)),
+        oblique((160, 120)),
+        sampling=COARSE._replace(pixels_per_degree=8.5),
+    )
 
 
 @pytest.mark.parametrize("looks", [BLACK, ROUGH], ids=["black", "rough"])

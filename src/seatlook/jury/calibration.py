@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from seatlook.errors import InputError, Problem
-from seatlook.jury.questionnaire import WRINKLES
+from seatlook.jury.questionnaire import PREFERENCE, SEEN, WRINKLES
 from seatlook.jury.votes import Ballots
 from seatlook.model import FloatArray
 from seatlook.visibility.cross_check import Measures
@@ -139,7 +139,9 @@ def calibrate_by_key(
     stimuli = tuple(replace(s, geometry=key[s.name]["geometry"]) for s in questionnaire.stimuli)
     complete = replace(ballots, questionnaire=replace(questionnaire, stimuli=stimuli))
     measures = {s.name: Measures(**{name: key[s.name][name] for name in MEASURES}) for s in stimuli}
-    return calibrate(complete, measures, seed=seed)
+    # VWI says whether a wrinkle is seen; a jury may have been asked how wrinkled alone.
+    question = SEEN if SEEN in questionnaire.questions else WRINKLES
+    return calibrate(complete, measures, question=question, seed=seed)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,7 +176,7 @@ def _choices(ballots: Ballots, measures: Mapping[str, Measures], question: str) 
         raise InputError(problems)
     pairs = [(v.chosen or "", v.right if v.chosen == v.left else v.left) for v in votes]
     # Asked for a preference, people are expected to choose the less visible wrinkles.
-    pairs = pairs if question == WRINKLES else [pair[::-1] for pair in pairs]
+    pairs = pairs if question != PREFERENCE else [pair[::-1] for pair in pairs]
     values = {}
     for name in MEASURES:
         x = np.array([[getattr(measures[stimulus], name) for stimulus in pair] for pair in pairs])

@@ -14,10 +14,11 @@ from typing import Any, Literal
 from seatlook.errors import InputError, Problem
 
 SCHEMA = 1
-WRINKLES, PREFERENCE = "wrinkles", "preference"
+SEEN, WRINKLES, PREFERENCE = "seen", "wrinkles", "preference"
 QUESTIONS = MappingProxyType(
     {
-        WRINKLES: "Which one shows wrinkles more?",
+        SEEN: "In which one can you see a wrinkle more easily?",
+        WRINKLES: "Which one looks more wrinkled?",
         PREFERENCE: "Which one would you rather have?",
     }
 )
@@ -35,7 +36,7 @@ class Stimulus:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Catch:
-    """Two pictures nobody can mistake: ``wrinkled`` shows wrinkles more; neither is ranked."""
+    """Two pictures nobody can mistake: ``wrinkled`` looks more wrinkled; neither is ranked."""
 
     wrinkled: Stimulus
     smooth: Stimulus
@@ -59,7 +60,7 @@ class Questionnaire:
     Parameters
     ----------
     stimuli : three or more
-    catches : pairs that screen judges, shown under the question about wrinkles
+    catches : pairs that screen judges, shown under "wrinkles"
     questions : asked one after the other over all pairs
     repeat_share : share of the pairs shown again with sides exchanged
     ties : whether "equal" may be answered

@@ -10,15 +10,14 @@ from typing import Any
 
 from seatlook import io
 from seatlook.errors import InputError
-from seatlook.jury.questionnaire import Catch, Questionnaire, Stimulus
+from seatlook.jury.questionnaire import SEEN, WRINKLES, Catch, Questionnaire, Stimulus
 from seatlook.model import Appearance, Camera, Rig, Scene, Solution
 from seatlook.model.progress import Progress, silent
 from seatlook.pbr import Image
 from seatlook.visibility.cross_check import Measures
 from seatlook.visibility.heights import amplified, peak_to_valley, reference_rig
 from seatlook.visibility.scoring import BLACK
-from seatlook.visibility.view import View, luminance
-from seatlook.visibility.vwi import score
+from seatlook.visibility.view import Sampling, View, luminance
 
 # A catch pair differs by 1 mm of wrinkles, or by as much more as makes it this visible.
 CATCH_HEIGHT = 0.001  # [m]
@@ -103,7 +102,9 @@ class Stimuli:
                 f"{len(self.cells)} pictures; {FEWEST} to {MOST} screen judges without tiring them"
             )
 
-    def questionnaire(self, *, title: str, ties: bool = False) -> Questionnaire:
+    def questionnaire(
+        self, *, title: str, questions: tuple[str, ...] = (SEEN, WRINKLES), ties: bool = False
+    ) -> Questionnaire:
         """Ask for these pictures; see :class:`seatlook.jury.questionnaire.Questionnaire`."""
         return Questionnaire(
             title=title,
@@ -112,6 +113,7 @@ class Stimuli:
                 Catch(wrinkled=wrinkled.stimulus, smooth=smooth.stimulus)
                 for wrinkled, smooth in self.catches
             ),
+            questions=questions,
             ties=ties,
         )
 
@@ -178,12 +180,7 @@ def catch_pair(view: View, black: Appearance, rig: Rig, *, seed: int) -> Pair | 
     while height <= _HIGHEST:
         studio = view.studio_of(amplified(view, height / peak_to_valley(view)))
         wrinkled = studio.render(black, rig=rig, camera=view.camera, quality=view.quality)
-        result = score(
-            luminance(wrinkled),
-            luminance(smooth),
-            pixels_per_degree=view.camera.pixels_per_degree,
-            mask=view.region.mask,
-        )
+        result = view.score(luminance(wrinkled), luminance(smooth), view.region)
         if result.vwi >= CATCH_VWI:
             return (
                 _catch(f"wrinkles of {1e3 * height:g} mm", wrinkled, rig, seed),
@@ -201,7 +198,9 @@ def catch_rigs(scene: Scene, camera: Camera) -> tuple[Rig, ...]:
 
 def jury_view(solution: Solution, camera: Camera, *, width: int) -> View:
     """View for a jury: the camera's picture, cut to ``width`` pixels at the same scale."""
-    return View(solution, replace(camera, size=(min(width, camera.size[0]), camera.size[1])))
+    cut = replace(camera, size=(min(width, camera.size[0]), camera.size[1]))
+    # Judges see the very pictures that are scored.
+    return View(solution, cut, sampling=Sampling(pixels_per_degree=cut.pixels_per_degree))
 
 
 def code_of(label: str, seed: int) -> str:

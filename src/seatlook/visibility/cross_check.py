@@ -10,8 +10,9 @@ from scipy.ndimage import gaussian_filter
 
 from seatlook.errors import InputError
 from seatlook.model import FloatArray
+from seatlook.visibility.kernels.pyramid import reduce
 from seatlook.visibility.observer import OBSERVER
-from seatlook.visibility.region import check_luminance, check_mask
+from seatlook.visibility.region import SMALLEST, check_luminance, check_mask
 from seatlook.visibility.vwi import Mask
 
 Verdict = Literal["first", "second", "equal", "not separable"]
@@ -31,6 +32,36 @@ class Measures:
     vwi: float
     log_ratio: float
     dissimilarity: float
+
+
+def cross_checked(
+    vwi: float,
+    test_luminance: FloatArray,
+    reference_luminance: FloatArray,
+    *,
+    white: float,
+    mask: Mask,
+    left_out: int = 0,
+) -> Measures:
+    """Take the cheap measures of two pictures beside their VWI.
+
+    Parameters
+    ----------
+    white : see :func:`dissimilarity`
+    left_out : finest octaves that the VWI leaves out; the measures leave them out as well
+    """
+    pair, share = [test_luminance, reference_luminance], mask.astype(float)
+    for _ in range(left_out):
+        if min(share.shape) < 2 * SMALLEST:
+            break
+        pair, share = [reduce(picture) for picture in pair], reduce(share)
+    # A region of a few pixels keeps those that it covers most.
+    inside = share >= min(0.5, float(share.max()))
+    return Measures(
+        vwi=vwi,
+        log_ratio=log_ratio(pair[0], pair[1], mask=inside),
+        dissimilarity=dissimilarity(pair[0], pair[1], white=white, mask=inside),
+    )
 
 
 def log_ratio(

@@ -56,9 +56,16 @@ class Grid:
         return self.rigs[int(self.vwi[self.textures.index(texture)].argmax())]
 
     @property
-    def least_visible(self) -> str:
-        """Texture whose worst cell is lowest: the safest choice for these rigs."""
-        return self.textures[int(self.vwi.max(axis=1).argmin())]
+    def least_visible(self) -> str | None:
+        """Texture whose worst cell is lowest, the safest choice for these rigs.
+
+        None where it cannot be told from the worst cell of another.
+        """
+        worst = {name: self.sights[name, self.worst_rig(name)].measures for name in self.textures}
+        lowest = min(self.textures, key=lambda name: worst[name].vwi)
+        others = (worst[name] for name in self.textures if name != lowest)
+        told = all(more_visible(other, worst[lowest]) == "first" for other in others)
+        return lowest if told else None
 
     def compare(self, first: str, second: str, rig: str) -> Verdict:
         """Say which of two textures shows more under a rig, if all measures agree."""

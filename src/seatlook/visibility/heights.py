@@ -12,10 +12,9 @@ from seatlook.errors import InputError
 from seatlook.model import Appearance, Camera, FloatArray, Rig, Solution, sun
 from seatlook.pbr import Image, Studio
 from seatlook.visibility.view import View, luminance
-from seatlook.visibility.vwi import score, zone_visibility
 
-# Heights of the ladder [m]; what looks higher than the last is reported as "above".
-LADDER = (0.0, 2e-5, 5e-5, 1e-4, 2.5e-4, 5e-4, 1e-3)
+# Heights of the ladder over that of the field; what looks higher than the last reads "above".
+LADDER = (0.0, 0.125, 0.25, 0.5, 1.0, 1.5)
 
 
 def reference_rig(camera: Camera) -> Rig:
@@ -70,45 +69,47 @@ def amplitude_ladder(
     black: Appearance,
     *,
     rig: Rig | None = None,
-    heights: Sequence[float] = LADDER,
+    heights: Sequence[float] | None = None,
 ) -> Ladder:
     """Score the view's wrinkles on black leather at the heights of the ladder.
 
     The field keeps its form; vertices move along their camera rays between reference and solved
     cover, and beyond.
 
+    Parameters
+    ----------
+    heights : [m] rising from 0; ``LADDER`` times that of the field, where none are given
+
     Raises
     ------
     InputError
         A field without height, or heights that do not rise from 0.
     """
-    rungs = np.asarray(heights, dtype=float)
-    if rungs[0] != 0 or not (np.diff(rungs) > 0).all():
-        raise InputError.single("heights", got=list(heights), expected="rising from 0")
     height = peak_to_valley(view)
     if not height > 0:
         raise InputError.single("wrinkles", got="no height", expected="a field to scale")
+    rungs = height * np.asarray(LADDER) if heights is None else np.asarray(heights, dtype=float)
+    if rungs[0] != 0 or not (np.diff(rungs) > 0).all():
+        raise InputError.single("heights", got=rungs.tolist(), expected="rising from 0")
     rig = rig or reference_rig(view.camera)
     factors = rungs / height
-    names = view.solution.cover.zone_names
-    smooth = luminance(_draw(view.reference_studio, view, black, rig))
-    values, zones = np.zeros(len(rungs)), np.zeros((len(rungs), len(names)))
-    for k, factor in enumerate(factors[1:], start=1):
-        studio = view.studio_of(amplified(view, float(factor)))
-        result = score(
-            luminance(_draw(studio, view, black, rig)),
-            smooth,
-            pixels_per_degree=view.camera.pixels_per_degree,
-            mask=view.region.mask,
-        )
-        values[k] = result.vwi
-        zones[k] = zone_visibility(result.map, view.region.zone, len(names))
-    own = {names[k]: peak_to_valley(view, names[k]) for k in np.flatnonzero(~np.isnan(zones[-1]))}
+    smooth, seen = luminance(_draw(view.reference_studio, view, black, rig)), view.region_under(rig)
+    values: list[float] = [0.0]
+    zones: dict[str, list[float]] = {}
+    for factor in factors[1:]:
+        studio = view.test_studio if factor == 1 else view.studio_of(amplified(view, float(factor)))
+        result = view.score(luminance(_draw(studio, view, black, rig)), smooth, seen)
+        values.append(result.vwi)
+        for name, vwi in view.by_zone(result, seen)[0].items():
+            zones.setdefault(name, [0.0]).append(vwi)
+    own = {name: peak_to_valley(view, name) for name in zones}
     ladders = {
-        name: Ladder(height=h, heights=factors * h, vwi=zones[:, names.index(name)])
-        for name, h in own.items()
+        name: Ladder(height=own[name], heights=factors * own[name], vwi=np.array(zone))
+        for name, zone in zones.items()
     }
-    return Ladder(height=height, heights=rungs, vwi=values, zones=MappingProxyType(ladders))
+    return Ladder(
+        height=height, heights=rungs, vwi=np.array(values), zones=MappingProxyType(ladders)
+    )
 
 
 def amplified(view: View, factor: float) -> Solution:

@@ -66,7 +66,7 @@ def search_light(
 ) -> WorstLight:
     """Find the light under which the view's wrinkles score highest.
 
-    See :func:`worst_direction`; a view of half size and ``quality="draft"`` is meant for this.
+    See :func:`worst_direction`; a view of half the density in draft quality is meant for this.
     """
     return worst_direction(
         lambda azimuth, elevation: view.vwi(looks, rig_at(azimuth, elevation)),

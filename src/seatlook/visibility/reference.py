@@ -7,19 +7,16 @@ and its silhouette; a texture shifted by one pixel would outscore any wrinkle.
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
-from scipy.ndimage import distance_transform_edt
 
 from seatlook.errors import InputError
 from seatlook.mesh import vertex_normals
 from seatlook.model import Camera, Cover, FloatArray, Foam, Solution
-from seatlook.model.zones import FREE_EDGE
-from seatlook.pbr import Studio
 from seatlook.solver.foam.distance import DistanceField, distance_field
+from seatlook.visibility.outline import cutoffs
 from seatlook.wrinkle import low_passed
 
 # What a score compares with: the cover smoothed along the camera's rays; the cover as it is, shaded
@@ -32,28 +29,8 @@ CUTOFF = 0.1
 _RESOLVED = 3.0
 # Cosine between ray and normal from which a pixel is scored. Below its half, where a ray measures
 # width rather than depth, and on the far side vertices are not moved.
-_GRAZING = 0.2
-# Pixels beside a silhouette that are left out: the finest bands reach this far.
-_SILHOUETTE = 6
+GRAZING = 0.2
 _PASSES, _FAR_PASSES = 3, 8
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Region:
-    """Where a score is taken, pixel by pixel.
-
-    Parameters
-    ----------
-    mask : (h, w) bool            zones that count, away from seams, edges and silhouettes
-    face : (h, w) int64           face of the solution, -1 where the pixel shows none
-    zone : (h, w) int64           zone of that face, -1 outside the mask
-    area : (h, w) float64 [m2]    of the surface that the pixel shows, 0 where none
-    """
-
-    mask: npt.NDArray[np.bool_]
-    face: npt.NDArray[np.int64]
-    zone: npt.NDArray[np.int64]
-    area: FloatArray
 
 
 def smooth_reference(solution: Solution, camera: Camera, *, cutoff: float = CUTOFF) -> Solution:
@@ -61,7 +38,8 @@ def smooth_reference(solution: Solution, camera: Camera, *, cutoff: float = CUTO
 
     With a foam the *distance from its surface* is smoothed, so that crown, bolsters and trenches,
     which belong to the design, stay as they are whatever their radius; without one the shape
-    itself is. Outlines of panels, and with them all seams, hooks and frames, keep their place.
+    itself is. Outlines of panels, and with them all seams, hooks and frames, keep their place, and
+    beside them a bend that follows them stays, see :func:`seatlook.visibility.outline.cutoffs`.
     Of a wave of the cut-off length half stays.
 
     Parameters
@@ -105,6 +83,24 @@ def design_reference(solution: Solution, camera: Camera) -> Solution:
     """
     target = half_thickness(solution.cover)
     return _moved(solution, foam_of(solution.cover), camera, target, passes=_FAR_PASSES)
+
+
+def on_foam(solution: Solution) -> Solution:
+    """Lay the cover on the foam's surface, half its thickness above it: no wrinkle, no sag.
+
+    Raises
+    ------
+    InputError
+        No foam.
+    """
+    cover = solution.cover
+    field, half = field_of(foam_of(cover)), half_thickness(cover)
+    x = np.array(solution.positions)
+    for _ in range(8):
+        height, normal = field.at(x)
+        known = np.isfinite(height)
+        x[known] -= (height - half)[known, None] * normal[known]
+    return replace(solution, positions=x)
 
 
 def foam_of(cover: Cover) -> Foam:
@@ -174,84 +170,22 @@ def height_over_design(solution: Solution) -> FloatArray:
 
 def _off_smooth_shape(cover: Cover, x: FloatArray, cutoff: float) -> tuple[FloatArray, FloatArray]:
     """Height (n,) over the low-passed shape itself, and its normals (n, 3)."""
-    smooth = low_passed(cover, x, wavelength=cutoff)
+    smooth = low_passed(cover, x, wavelength=cutoffs(cover, cutoff))
     normal = vertex_normals(smooth, cover.faces)
     return _dot(normal, x - smooth), normal
 
 
 def _band(cover: Cover, height: FloatArray, cutoff: float) -> FloatArray:
     """Part of a height (n,) in waves between the element size and ``cutoff``; 0 on outlines."""
-    short = height - low_passed(cover, height[:, None], wavelength=cutoff)[:, 0]
+    long = low_passed(cover, height[:, None], wavelength=cutoffs(cover, cutoff))[:, 0]
     resolved = _RESOLVED * cover.element_size
-    return low_passed(cover, short[:, None], wavelength=resolved)[:, 0]
-
-
-def region(studio: Studio, camera: Camera, *, zones: tuple[str, ...] | None = None) -> Region:
-    """Find the pixels that are scored.
-
-    Parameters
-    ----------
-    zones : names to take; None = all but seam bands and free edges
-
-    Raises
-    ------
-    InputError
-        An unknown zone, or no pixel left.
-    """
-    cover = studio.solution.cover
-    names = cover.zone_names
-    if zones is None:
-        zones = tuple(n for n in names if n != FREE_EDGE and not n.startswith("seam "))
-    unknown = sorted(set(zones) - set(names))
-    if unknown:
-        raise InputError.single(
-            "zones", got=repr(unknown[0]), expected=f"some of {', '.join(names)}"
-        )
-    face = solver_faces(studio, camera)
-    cosine, area = _pixel_area(studio.solution, camera, face)
-    zone = np.where(face >= 0, cover.zone[face], -1)
-    edge = (face < 0) | (cosine < _GRAZING)
-    # The nearest pixel of a silhouette is the nearest one that shows no cover or a grazing face.
-    away = distance_transform_edt(~edge) > _SILHOUETTE if edge.any() else np.ones(face.shape, bool)
-    inside = np.isin(zone, [names.index(name) for name in zones])
-    mask = inside & away
-    if not mask.any():
-        raise InputError.single(
-            f"camera {camera.name}", got="no pixel of the zones", expected="a view of them"
-        )
-    return Region(mask=mask, face=face, zone=np.where(mask, zone, -1), area=area)
-
-
-def solver_faces(studio: Studio, camera: Camera) -> npt.NDArray[np.int64]:
-    """Face of the solution that each pixel shows, (h, w), -1 for foam and background."""
-    drawn = studio.faces(camera).astype(np.int64)
-    panels = studio.surface.faces
-    children = panels // len(studio.solution.cover.faces)
-    return np.where((drawn >= 0) & (drawn < panels), drawn // children, -1)
-
-
-def _pixel_area(
-    solution: Solution, camera: Camera, face: npt.NDArray[np.int64]
-) -> tuple[FloatArray, FloatArray]:
-    """Cosine between ray and face, and the area [m2] a pixel covers on it; both (h, w)."""
-    p = solution.positions[solution.cover.faces]
-    vector = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
-    ray = camera.position - p.mean(axis=1)
-    distance = np.linalg.norm(ray, axis=1)
-    cosine = _dot(vector, ray) / (np.linalg.norm(vector, axis=1) * distance)
-    forward = camera.target - camera.position
-    depth = -ray @ (forward / np.linalg.norm(forward))
-    pixel = 2 * np.tan(np.radians(camera.vertical_fov_deg) / 2) / camera.size[1]
-    # depth pixel is the pixel's side on a plane across the view; distance / depth turns it.
-    area = (depth * pixel) ** 2 * (depth / distance) / np.maximum(cosine, 1e-3)
-    shown = face >= 0
-    return np.where(shown, cosine[face], 0.0), np.where(shown, area[face], 0.0)
+    return low_passed(cover, (height - long)[:, None], wavelength=resolved)[:, 0]
 
 
 def _seen(cosine: FloatArray) -> FloatArray:
     """Way along the ray per height, faded out from grazing views to the far side."""
-    fade = np.clip(2 * cosine / _GRAZING - 1, 0.0, 1.0)
-    return np.asarray(fade / np.maximum(cosine, _GRAZING / 2))
+    fade = np.clip(2 * cosine / GRAZING - 1, 0.0, 1.0)
+    return np.asarray(fade / np.maximum(cosine, GRAZING / 2))
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -12,6 +12,7 @@ from seatlook.model import Limit, Scene, WrinkleMap
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES, Verdict
 from seatlook.results.resolution import resolution
+from seatlook.visibility.concentration import Concentration
 from seatlook.visibility.grid import Grid, score_grid
 from seatlook.visibility.heights import Ladder, amplitude_ladder
 from seatlook.visibility.view import View
@@ -42,9 +43,19 @@ class SceneScore:
         """Whether every limit on the score is kept."""
         return all(v.kept for v in self.verdicts)
 
-    def zone_height(self, zone: str, texture: str, rig: str) -> float:
-        """Equivalent height [m] of the wrinkles in a zone; inf above the ladder."""
-        return self.ladder.zones[zone].equivalent(self.grid.sights[texture, rig].zones[zone])
+    @property
+    def peak(self) -> Concentration:
+        """Where most of the score of a cell lies in the fewest pixels."""
+        return max((sight.peak for sight in self.grid.sights.values()), key=lambda p: p.share)
+
+    def zone_height(self, zone: str, texture: str, rig: str) -> float | None:
+        """Equivalent height [m] of the wrinkles in a zone; inf above the ladder.
+
+        None for a zone that moving shadows leave no pixel of, here or under the reference rig.
+        """
+        vwi = self.grid.sights[texture, rig].zones.get(zone)
+        ladder = self.ladder.zones.get(zone)
+        return None if vwi is None or ladder is None else ladder.equivalent(vwi)
 
 
 def score_scene(
@@ -60,7 +71,7 @@ def score_scene(
     Raises
     ------
     ScoreRefusedError
-        The cover without wrinkles scores 0.1 or more.
+        The cover without wrinkles scores ``observer.NULL_LIMIT`` or more.
     InputError
         A limit on a zone that is not in view.
     """
@@ -88,9 +99,9 @@ def score_scene(
 
 def null_gate(view: View, scene: Scene) -> float:
     """Highest null score over cells that hold every texture and every rig at least once."""
-    looks = list(scene.textures.values())
+    looks, null = list(scene.textures.values()), view.without_wrinkles()
     return max(
-        view.null_score(looks[k % len(looks)], scene.rigs[k % len(scene.rigs)])
+        view.null_score(looks[k % len(looks)], scene.rigs[k % len(scene.rigs)], null=null)
         for k in range(max(len(looks), len(scene.rigs)))
     )
 
@@ -111,8 +122,14 @@ def _zones_of(limit: Limit, scene: Scene, view: View) -> tuple[str, ...]:
 
 
 def _value(limit: Limit, zones: tuple[str, ...], grid: Grid, ladder: Ladder) -> float:
-    """Worst value over the zones, all textures and all rigs."""
-    values = [(zone, sight.zones[zone]) for sight in grid.sights.values() for zone in zones]
+    """Worst value over the zones, all textures and all rigs; inf where none can be told."""
+    values = [
+        (zone, sight.zones[zone])
+        for sight in grid.sights.values()
+        for zone in zones
+        if zone in sight.zones and (limit.measure == "vwi" or zone in ladder.zones)
+    ]
     if limit.measure == "vwi":
-        return max(vwi for _, vwi in values)
-    return 1e3 * max(ladder.zones[zone].equivalent(vwi) for zone, vwi in values)
+        return max((vwi for _, vwi in values), default=np.inf)
+    heights = (ladder.zones[zone].equivalent(vwi) for zone, vwi in values)
+    return 1e3 * max(heights, default=np.inf)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,26 +16,44 @@ from seatlook.model import Appearance, Camera, FloatArray, Rig, Solution, Wrinkl
 from seatlook.pbr import Image, Studio
 from seatlook.pbr.light.exposure import saturation_luminance
 from seatlook.pbr.shading.studio import studio
-from seatlook.visibility.cross_check import Measures, dissimilarity, log_ratio
+from seatlook.visibility.bands import PEAK
+from seatlook.visibility.concentration import CONCENTRATED, TOP, Concentration, concentration
+from seatlook.visibility.cross_check import Measures, cross_checked
+from seatlook.visibility.observer import NULL_LIMIT
+from seatlook.visibility.pixels import Mask, Region, moving_shadows, region
 from seatlook.visibility.reference import (
     CUTOFF,
     Mode,
-    Region,
     design_reference,
-    field_of,
-    foam_of,
-    half_thickness,
     height_over_design,
-    region,
+    on_foam,
     smooth_reference,
     waves,
 )
-from seatlook.visibility.vwi import VisibilityScore, region_visibility, score, zone_visibility
+from seatlook.visibility.region import SMALLEST
+from seatlook.visibility.vwi import (
+    VisibilityScore,
+    region_visibility,
+    score,
+    zone_contrast,
+    zone_visibility,
+)
 
 Looks = Appearance | Mapping[str, Appearance] | None
-NULL_LIMIT = 0.1
+# Waves of fewer elements are left out: the cover cannot carry them.
+ELEMENTS_PER_WAVE = 3.0
 # Luminance of linear sRGB (IEC 61966-2-1).
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+class Sampling(NamedTuple):
+    """How finely a view is drawn: a quality, and a density whatever the size of its picture."""
+
+    quality: str = "score"
+    pixels_per_degree: float = 45.0
+
+
+SAMPLING = Sampling()
 
 
 class ScoreRefusedError(InputError):
@@ -48,18 +67,23 @@ class Sight:
     Parameters
     ----------
     score : over all zones that count
-    zones : zone -> VWI of its pixels
+    zones, contrasts : zone -> VWI, and apparent contrast [%], of its pixels
     stretch, compression : VWI weighted by W_stretch and W_compression; None without indices, or
         where the index is 0 everywhere in view
     measures : the score beside its cross-checks
+    peak : what of the score lies in few pixels, and where
+    mask : (h, w) bool   the pixels that it is taken over
     picture : the test picture, for the page
     """
 
     score: VisibilityScore
     zones: MappingProxyType[str, float]
+    contrasts: MappingProxyType[str, float]
     stretch: float | None
     compression: float | None
     measures: Measures
+    peak: Concentration
+    mask: Mask
     picture: Image
 
 
@@ -67,6 +91,11 @@ class View:
     """A solved cover and the same without its wrinkles, from one camera.
 
     Studios cache shadows per light and faces per camera, so further textures cost only shading.
+
+    Attributes
+    ----------
+    camera : the one that was given, at the density of pixels of a score
+    region : the pixels that count under any light, see :meth:`region_under`
     """
 
     def __init__(
@@ -76,8 +105,8 @@ class View:
         *,
         mode: Mode = "view-ray",
         cutoff: float = CUTOFF,
-        zones: tuple[str, ...] | None = None,
-        quality: str = "score",
+        sampling: Sampling = SAMPLING,
+        element_size: float | None = None,
     ) -> None:
         """Make the reference.
 
@@ -87,14 +116,41 @@ class View:
             smoothed, shape and shadows as they are: a lower bound) or ``design`` (the surface
             that was drawn)
         cutoff : float [m]   see :func:`smooth_reference`; not used by ``design``
-        zones : see :func:`region`
+        sampling : coarser for a search
+        element_size : float [m]   waves shorter than three elements are left out; that of the
+            coarsest mesh where several covers are compared, None for the cover's own
         """
-        self.solution, self.camera = solution, camera
-        self.mode, self.cutoff, self.quality = mode, cutoff, quality
+        self.solution, self.camera = solution, at_density(camera, sampling.pixels_per_degree)
+        self.mode, self.cutoff, self.quality = mode, cutoff, sampling.quality
+        self.element_size = element_size or solution.cover.element_size
         self.reference = self._reference()
         # The studio that pictures of this solution share.
-        self.test_studio, self.reference_studio = studio(solution), self.studio_of(self.reference)
-        self.region: Region = region(self.test_studio, camera, zones=zones)
+        self.test_studio = studio(solution)
+        self.reference_studio = self.studio_of(self.reference)
+        self.region: Region = region(self.test_studio, self.camera)
+        self._under: tuple[Rig, Region] | None = None
+
+    @property
+    def highest_frequency(self) -> float:
+        """Frequency [cycles/deg] of the shortest wave that the mesh carries, 1/(3 h), as seen."""
+        wave = ELEMENTS_PER_WAVE * self.element_size
+        return self.camera.pixels_per_degree * self.region.pixel / wave
+
+    @property
+    def _left_out(self) -> int:
+        """Number of octaves that lie above the highest frequency."""
+        finest = PEAK * self.camera.pixels_per_degree
+        return max(0, math.ceil(math.log2(finest / self.highest_frequency)))
+
+    def region_under(self, rig: Rig) -> Region:
+        """The pixels that count under a rig: those away from edges of shadows that move."""
+        if self.mode == "normals":  # both have the shadows of the cover itself
+            return self.region
+        if self._under is None or self._under[0] is not rig:
+            studios = self.test_studio, self.reference_studio
+            moving = moving_shadows(*studios, rig, self.camera, self.quality, self.region.side)
+            self._under = rig, self.region.without(moving)
+        return self._under[1]
 
     def _reference(self) -> Solution:
         if self.mode == "design":
@@ -103,7 +159,9 @@ class View:
 
     def studio_of(self, shape: Solution) -> Studio:
         """Make a studio for another shape of the cover, as the mode asks."""
-        return Studio(self.solution, shading=shape) if self.mode == "normals" else Studio(shape)
+        if self.mode == "normals":
+            return Studio(self.solution, shading=shape, seen=self.test_studio)
+        return Studio(shape, seen=self.test_studio)
 
     @functools.cached_property
     def heights(self) -> FloatArray:
@@ -121,45 +179,64 @@ class View:
         indices : of the solution, to split the score by cause
         """
         picture, reference = self._draw(looks, rig)
-        pair = luminance(picture), luminance(reference)
-        result = self._score(*pair)
-        mask = self.region.mask
-        measures = Measures(
-            vwi=result.vwi,
-            log_ratio=log_ratio(*pair, mask=mask),
-            dissimilarity=dissimilarity(
-                *pair, white=saturation_luminance(picture.ev100), mask=mask
-            ),
-        )
-        names = self.solution.cover.zone_names
-        values = zone_visibility(result.map, self.region.zone, len(names))
-        zones = {names[k]: float(values[k]) for k in np.flatnonzero(np.isfinite(values))}
+        pair, seen = (luminance(picture), luminance(reference)), self.region_under(rig)
+        result = self.score(*pair, seen)
+        vwi, contrast = self.by_zone(result, seen)
+        peak = concentration(result.map, seen, self.solution.cover)
+        self._refuse(peak, result.vwi, rig)
         return Sight(
             score=result,
-            zones=MappingProxyType(zones),
-            stretch=None if indices is None else self._cause(result, indices.w_stretch),
-            compression=None if indices is None else self._cause(result, indices.w_compression),
-            measures=measures,
+            zones=vwi,
+            contrasts=contrast,
+            stretch=None if indices is None else self._cause(result, seen, indices.w_stretch),
+            compression=None
+            if indices is None
+            else self._cause(result, seen, indices.w_compression),
+            measures=cross_checked(
+                result.vwi,
+                *pair,
+                white=saturation_luminance(picture.ev100),
+                mask=seen.mask,
+                left_out=self._left_out,
+            ),
+            peak=peak,
+            mask=seen.mask,
             picture=picture,
         )
+
+    def by_zone(
+        self, result: VisibilityScore, seen: Region
+    ) -> tuple[MappingProxyType[str, float], MappingProxyType[str, float]]:
+        """VWI and apparent contrast [%] of every zone that a region shows."""
+        names = self.solution.cover.zone_names
+        ppd = self.camera.pixels_per_degree
+        shown = np.unique(seen.zone[seen.mask])
+        vwi = zone_visibility(result.map, seen.zone, len(names), pixels_per_degree=ppd)
+        contrast = zone_contrast(result.contrast_map, seen.zone, len(names))
+        first, second = ({names[k]: float(v[k]) for k in shown} for v in (vwi, contrast))
+        return MappingProxyType(first), MappingProxyType(second)
 
     def vwi(self, looks: Looks, rig: Rig) -> float:
         """VWI alone, for searches."""
         picture, reference = self._draw(looks, rig)
-        return self._score(luminance(picture), luminance(reference)).vwi
+        return self.score(luminance(picture), luminance(reference), self.region_under(rig)).vwi
 
-    def null_score(self, looks: Looks, rig: Rig) -> float:
+    def null_score(self, looks: Looks, rig: Rig, *, null: View | None = None) -> float:
         """VWI of the foam's own surface, with seams and texture, against its reference.
+
+        Parameters
+        ----------
+        null : of :meth:`without_wrinkles`, where several scores are asked for
 
         Raises
         ------
         ScoreRefusedError
-            A score of 0.1 or more: then pictures and references do not match, and no score of this
-            view can be trusted.
+            A score of ``observer.NULL_LIMIT`` or more: then pictures and references do not match,
+            and no score of this view can be trusted.
         InputError
             No foam.
         """
-        vwi = self._null.vwi(looks, rig)
+        vwi = (null or self.without_wrinkles()).vwi(looks, rig)
         if not vwi < NULL_LIMIT:
             raise ScoreRefusedError.single(
                 f"score of view {self.camera.name} under {rig.name}",
@@ -168,10 +245,16 @@ class View:
             )
         return vwi
 
-    @functools.cached_property
-    def _null(self) -> View:
-        flat = on_foam(self.solution)
-        return View(flat, self.camera, mode=self.mode, cutoff=self.cutoff, quality=self.quality)
+    def without_wrinkles(self) -> View:
+        """The same view of the cover laid on its foam; it holds as much memory as this one."""
+        return View(
+            on_foam(self.solution),
+            self.camera,
+            mode=self.mode,
+            cutoff=self.cutoff,
+            sampling=Sampling(self.quality, self.camera.pixels_per_degree),
+            element_size=self.element_size,
+        )
 
     def _draw(self, looks: Looks, rig: Rig) -> tuple[Image, Image]:
         """Draw the cover and its reference."""
@@ -181,39 +264,47 @@ class View:
             self.reference_studio.render(looks, **options),
         )
 
-    def _score(self, test: FloatArray, reference: FloatArray) -> VisibilityScore:
+    def score(self, test: FloatArray, reference: FloatArray, seen: Region) -> VisibilityScore:
+        """Score luminances (h, w) [cd/m2] of this view over a region, in the bands that count."""
         return score(
             test,
             reference,
             pixels_per_degree=self.camera.pixels_per_degree,
-            mask=self.region.mask,
-            pixel_area=self.region.area,
+            mask=seen.mask,
+            pixel_area=seen.area,
+            highest_frequency=self.highest_frequency,
         )
 
-    def _cause(self, result: VisibilityScore, index: FloatArray) -> float | None:
+    def _refuse(self, peak: Concentration, vwi: float, rig: Rig) -> None:
+        # Of next to nothing it does not matter where it lies.
+        if peak.share > CONCENTRATED and vwi >= NULL_LIMIT:
+            raise ScoreRefusedError.single(
+                f"score of view {self.camera.name} under {rig.name}",
+                got=f"{100 * peak.share:.0f} % of what is visible in {100 * TOP:g} % of the "
+                f"pixels: {', '.join(peak.places)}",
+                expected=f"at most {100 * CONCENTRATED:g} %, as wrinkles have",
+            )
+
+    def _cause(self, result: VisibilityScore, seen: Region, index: FloatArray) -> float | None:
         """VWI weighted by an index (m,) of the faces in view."""
-        weight = np.where(self.region.mask, index[self.region.face], 0.0)
+        weight = np.where(seen.mask, index[seen.face], 0.0)
         if not weight.any():
             return None
-        return region_visibility(result.map, mask=self.region.mask, weight=weight)
+        ppd = self.camera.pixels_per_degree
+        return region_visibility(result.map, pixels_per_degree=ppd, mask=seen.mask, weight=weight)
 
 
-def on_foam(solution: Solution) -> Solution:
-    """Lay the cover on the foam's surface, half its thickness above it: no wrinkle, no sag.
+def at_density(camera: Camera, pixels_per_degree: float) -> Camera:
+    """The same view in pixels of another density, to half a pixel of its width.
 
-    Raises
-    ------
-    InputError
-        No foam.
+    Examples
+    --------
+    >>> at_density(Camera(name="a", position=np.ones(3), target=np.zeros(3)), 22.5).size
+    (639, 359)
     """
-    cover = solution.cover
-    field, half = field_of(foam_of(cover)), half_thickness(cover)
-    x = np.array(solution.positions)
-    for _ in range(8):
-        height, normal = field.at(x)
-        known = np.isfinite(height)
-        x[known] -= (height - half)[known, None] * normal[known]
-    return replace(solution, positions=x)
+    factor = pixels_per_degree / camera.pixels_per_degree
+    width, height = (max(SMALLEST, round(factor * side)) for side in camera.size)
+    return replace(camera, size=(width, height))
 
 
 def luminance(image: Image) -> FloatArray:

@@ -1,10 +1,11 @@
 """VWI, the visible wrinkle index: how much a wrinkle changes what an eye receives.
 
-Both pictures are split into octaves by a binomial pyramid (Burt and Adelson 1983); the contrast
-of each octave is weighed by the sensitivity of the eye to its frequency at its luminance (Barten)
-and divided by how much the pattern that both share hides (masking after Foley 1994); octaves and
-pixels are pooled by a Minkowski sum. Its unit is the threshold of the model observer, which no
-jury has confirmed: see ``Observer.calibrated``.
+Both pictures are split into octaves by a binomial pyramid (Burt and Adelson 1983). The change in
+contrast of each octave is divided by its threshold: the reciprocal of the eye's sensitivity
+(castleCSF), raised by the pattern that both pictures share in this octave and in the next two
+(masking after Foley 1994). Octaves and pixels are pooled by a Minkowski sum over square degrees: 1
+is the threshold of the observer. What lies above the threshold is seen as contrast less the
+threshold (Kulikowski 1976). Fits and misses: ``docs/measurements/score.md``.
 """
 
 from __future__ import annotations
@@ -17,15 +18,9 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError
 from seatlook.model import FloatArray
-from seatlook.visibility.kernels.band import contrasts, weigh
-from seatlook.visibility.kernels.pyramid import blur, expand, reduce
-from seatlook.visibility.observer import (
-    LOWEST_OCTAVE,
-    NODES_PER_OCTAVE,
-    OBSERVER,
-    Observer,
-    sensitivity_table,
-)
+from seatlook.visibility.bands import Response, responses
+from seatlook.visibility.kernels.pyramid import expand, reduce
+from seatlook.visibility.observer import OBSERVER, Observer
 from seatlook.visibility.region import check_luminance, check_mask, weighted_mean
 
 Mask = npt.NDArray[np.bool_]
@@ -33,32 +28,73 @@ Mask = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Band:
-    """Share of one octave: its centre frequency [cycles/deg] and the VWI it has alone."""
+    """Share of one octave: its frequency [cycles/deg]; VWI and apparent contrast [%] alone."""
 
     frequency: float
     vwi: float
+    apparent_contrast: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VisibilityScore:
-    """How visible the difference is; all figures over the mask, in thresholds of the observer.
+    """How visible the difference is; all figures over the mask.
 
     Parameters
     ----------
-    vwi : float >= 0               Minkowski mean of D, exactly 0 for equal pictures
+    vwi : float >= 0               Minkowski sum of D over square degrees, in thresholds of the
+        observer; exactly 0 for equal pictures
+    apparent_contrast : float [%]  what is seen above threshold: a grating of 10 % that fills the
+        mask, far above its threshold, has 10
     p995 : float                   99.5th percentile of D
     visible_share : (float, float) share of the region with D above the two values of the observer
     visible_area : the same in [m2], None where no pixel area was given
     bands : finest first
-    map : (h, w) float64           D of every pixel, masked or not
+    map : (h, w) float64           D of every pixel, masked or not: the VWI of one square degree of
+        such pixels
+    contrast_map : (h, w) float64  apparent contrast [%] of every pixel
     """
 
     vwi: float
+    apparent_contrast: float
     p995: float
     visible_share: tuple[float, float]
     visible_area: tuple[float, float] | None
     bands: tuple[Band, ...]
     map: FloatArray
+    contrast_map: FloatArray
+
+
+def detectability(
+    test_luminance: FloatArray, reference_luminance: FloatArray, pixels_per_degree: float
+) -> float:
+    """How far a difference between two pictures lies above the threshold of the eye.
+
+    Parameters
+    ----------
+    test_luminance, reference_luminance : (h, w) float [cd/m2] >= 0
+    pixels_per_degree : float
+
+    Returns
+    -------
+    float
+        d in thresholds: 1 where the observer just sees it; the VWI of the whole picture.
+
+    Raises
+    ------
+    InputError
+        As :func:`score`.
+
+    Examples
+    --------
+    A patch of a grating of 4 cycles/deg, 1 deg wide, on 30 cd/m2: seen from 0.9 % contrast on.
+
+    >>> x = (np.arange(128) - 63.5) / 40
+    >>> patch = np.exp(-2 * (x**2 + x[:, None] ** 2)) * np.cos(2 * np.pi * 4 * x)
+    >>> flat = np.full((128, 128), 30.0)
+    >>> float(round(detectability(flat * (1 + 0.009 * patch), flat, 40.0), 1))
+    1.0
+    """
+    return score(test_luminance, reference_luminance, pixels_per_degree=pixels_per_degree).vwi
 
 
 def score(
@@ -68,6 +104,7 @@ def score(
     pixels_per_degree: float,
     mask: Mask | None = None,
     pixel_area: float | FloatArray | None = None,
+    highest_frequency: float = np.inf,
     observer: Observer = OBSERVER,
 ) -> VisibilityScore:
     """Score how visible the difference between two pictures of one view is.
@@ -80,6 +117,7 @@ def score(
     pixels_per_degree : float
     mask : (h, w) bool             pixels the figures are taken over; None = all
     pixel_area : [m2]              of the surface that a pixel shows, a number or (h, w)
+    highest_frequency : [cycles/deg]    see :func:`seatlook.visibility.bands.responses`
 
     Returns
     -------
@@ -105,28 +143,40 @@ def score(
     if not (np.isfinite(pixels_per_degree) and pixels_per_degree > 0):
         raise InputError.single("pixels_per_degree", got=pixels_per_degree, expected="above 0")
     area = None if pixel_area is None else np.broadcast_to(pixel_area, test.shape) * region
-    energies, frequencies = _bands(test, reference, pixels_per_degree, observer)
-    energy = _collapse(energies)
-    D = energy ** (1 / observer.pooling)
-    inside = D[region]
+    octaves = responses(test, reference, pixels_per_degree, observer, highest_frequency)
+    root = 1 / observer.pooling
+    visibility = _collapse([octave.visible for octave in octaves], test.shape) ** root
+    contrast = _collapse([octave.contrast for octave in octaves], test.shape) ** root
+    contrast = _percent(contrast, observer)
+    inside = visibility[region]
     return VisibilityScore(
-        vwi=float(energy[region].mean() ** (1 / observer.pooling)),
+        vwi=region_visibility(
+            visibility, pixels_per_degree=pixels_per_degree, mask=region, observer=observer
+        ),
+        apparent_contrast=region_contrast(contrast, mask=region, observer=observer),
         p995=float(np.quantile(inside, 0.995)),
         visible_share=_each(observer, lambda limit: (inside > limit).mean()),
-        visible_area=None if area is None else _each(observer, lambda limit: area[limit < D].sum()),
-        bands=_band_scores(energies, frequencies, region, observer),
-        map=D,
+        visible_area=None
+        if area is None
+        else _each(observer, lambda limit: area[limit < visibility].sum()),
+        bands=_band_scores(octaves, region, pixels_per_degree, observer),
+        map=visibility,
+        contrast_map=contrast,
     )
 
 
 def region_visibility(
     visibility: FloatArray,
     *,
+    pixels_per_degree: float,
     mask: Mask | None = None,
     weight: FloatArray | None = None,
     observer: Observer = OBSERVER,
 ) -> float:
     """VWI of a region of the map D, or of a cause: pixels weighted by W_stretch, for instance.
+
+    With weights it is the VWI of their weighted mean on the area over which they are spread,
+    (sum w)^2 / sum w^2: where they are 0 and 1, the VWI of the pixels of 1.
 
     Parameters
     ----------
@@ -135,12 +185,35 @@ def region_visibility(
 
     Examples
     --------
-    >>> region_visibility(np.array([[0.0, 2.0]]), weight=np.array([[0.0, 5.0]]))
+    >>> region_visibility(
+    ...     np.array([[0.0, 2.0]]), pixels_per_degree=1.0, weight=np.array([[0.0, 5.0]])
+    ... )
     2.0
     """
     region = check_mask(mask, visibility.shape)
+    share = region.astype(float) if weight is None else region * weight
+    mean = weighted_mean(visibility**observer.pooling, share)
+    area = share.sum() ** 2 / np.square(share).sum() / pixels_per_degree**2
+    return float((mean * area) ** (1 / observer.pooling))
+
+
+def region_contrast(
+    contrast: FloatArray,
+    *,
+    mask: Mask | None = None,
+    weight: FloatArray | None = None,
+    observer: Observer = OBSERVER,
+) -> float:
+    """Apparent contrast [%] of a region of ``VisibilityScore.contrast_map``, or of a cause.
+
+    Examples
+    --------
+    >>> region_contrast(np.array([[0.0, 2.0]]), weight=np.array([[0.0, 5.0]]))
+    2.0
+    """
+    region = check_mask(mask, contrast.shape)
     share = region if weight is None else region * weight
-    return float(weighted_mean(visibility**observer.pooling, share) ** (1 / observer.pooling))
+    return float(weighted_mean(contrast**observer.pooling, share) ** (1 / observer.pooling))
 
 
 def zone_visibility(
@@ -148,6 +221,7 @@ def zone_visibility(
     zone: npt.NDArray[np.int64],
     count: int,
     *,
+    pixels_per_degree: float,
     observer: Observer = OBSERVER,
 ) -> FloatArray:
     """VWI of every zone of the map D at once, (count,); nan for a zone without a pixel.
@@ -159,82 +233,81 @@ def zone_visibility(
 
     Examples
     --------
-    >>> zone_visibility(np.array([[0.0, 2.0]]), np.array([[-1, 1]]), 2)
+    >>> zone_visibility(np.array([[0.0, 2.0]]), np.array([[-1, 1]]), 2, pixels_per_degree=1.0)
     array([nan,  2.])
     """
-    inside = zone >= 0
-    energy = visibility[inside] ** observer.pooling
-    total = np.bincount(zone[inside], energy, minlength=count)
-    pixels = np.bincount(zone[inside], minlength=count)
-    mean = total / np.where(pixels > 0, pixels, np.nan)
-    return np.asarray(mean ** (1 / observer.pooling))
+    total, pixels = _zone_sums(visibility**observer.pooling, zone, count)
+    total[pixels == 0] = np.nan
+    return np.asarray((total / pixels_per_degree**2) ** (1 / observer.pooling))
 
 
-def _bands(
-    test: FloatArray, reference: FloatArray, pixels_per_degree: float, observer: Observer
-) -> tuple[list[FloatArray], list[float]]:
-    """Return d^pooling of every band at its own size, and the bands' frequencies."""
-    energies: list[FloatArray] = []
-    frequencies: list[float] = []
-    frequency = pixels_per_degree / (2 * np.sqrt(2))
-    while frequency >= observer.lowest_frequency and min(test.shape) >= 4:
-        test_next, reference_next = reduce(test), reduce(reference)
-        ground, ground_reference = np.empty_like(test), np.empty_like(test)
-        expand(test_next, ground)
-        expand(reference_next, ground_reference)
-        change, shared = np.empty_like(test), np.empty_like(test)
-        contrasts(test, reference, ground, ground_reference, observer.darkest, change, shared)
-        energies.append(_detect(change, blur(shared), ground, frequency, observer))
-        frequencies.append(frequency)
-        test, reference, frequency = test_next, reference_next, frequency / 2
-    if not energies:
-        raise InputError.single(
-            "pixels_per_degree",
-            got=pixels_per_degree,
-            expected=f"at least one octave above {observer.lowest_frequency:g} cycles/deg",
-        )
-    return energies, frequencies
-
-
-def _detect(
-    change: FloatArray,
-    mask: FloatArray,
-    adaptation: FloatArray,
-    frequency: float,
-    observer: Observer,
+def zone_contrast(
+    contrast: FloatArray,
+    zone: npt.NDArray[np.int64],
+    count: int,
+    *,
+    observer: Observer = OBSERVER,
 ) -> FloatArray:
-    """Return d^pooling with d = change S / (1 + (k mask S)^q)^(1/p); uses up its arguments."""
-    table = sensitivity_table(frequency, observer.field_deg)
-    weigh(change, mask, adaptation, table, LOWEST_OCTAVE, NODES_PER_OCTAVE)
-    mask *= observer.masking_gain
-    hidden = 1 + mask**observer.masking_exponent
-    change **= observer.pooling
-    hidden **= -observer.pooling / observer.masking_root
-    change *= hidden
-    return change
+    """Apparent contrast [%] of every zone at once, (count,); nan for a zone without a pixel.
+
+    Examples
+    --------
+    >>> zone_contrast(np.array([[0.0, 2.0]]), np.array([[-1, 1]]), 2)
+    array([nan,  2.])
+    """
+    total, pixels = _zone_sums(contrast**observer.pooling, zone, count)
+    return np.asarray((total / np.where(pixels > 0, pixels, np.nan)) ** (1 / observer.pooling))
 
 
-def _collapse(energies: list[FloatArray]) -> FloatArray:
-    """Bring all bands to full size and add them."""
+def _zone_sums(
+    values: FloatArray, zone: npt.NDArray[np.int64], count: int
+) -> tuple[FloatArray, FloatArray]:
+    """Sum of the values and number of pixels of every zone."""
+    inside = zone >= 0
+    total = np.bincount(zone[inside], values[inside], minlength=count).astype(float)
+    return total, np.bincount(zone[inside], minlength=count).astype(float)
+
+
+def _percent(contrast: FloatArray, observer: Observer) -> FloatArray:
+    """Per cent of a grating whose pixels have this Minkowski mean, so that phase does not count."""
+    phase = np.arange(64) * np.pi / 64
+    grating = np.mean(np.abs(np.cos(phase)) ** observer.pooling) ** (1 / observer.pooling)
+    return np.asarray(contrast * (100.0 / grating))
+
+
+def _collapse(energies: list[FloatArray], shape: tuple[int, ...]) -> FloatArray:
+    """Bring all bands to full size and add them; the finest ones may be missing."""
+    sizes, of_size = [shape], {energy.shape: energy for energy in energies}
+    while sizes[-1] != energies[-1].shape:
+        sizes.append(tuple(-(-side // 2) for side in sizes[-1]))
     total = energies[-1]
-    for energy in energies[-2::-1]:
-        grown = np.empty_like(energy)
+    for size in sizes[-2::-1]:
+        grown = np.empty(size)
         expand(total, grown)
-        grown += energy
+        if size in of_size:
+            grown += of_size[size]
         total = grown
     return total
 
 
 def _band_scores(
-    energies: list[FloatArray], frequencies: list[float], region: Mask, observer: Observer
+    octaves: list[Response], region: Mask, pixels_per_degree: float, observer: Observer
 ) -> tuple[Band, ...]:
     """Pool every band at its own size; the mask shrinks with it."""
-    share = region.astype(float)
+    share, root = region.astype(float), 1 / observer.pooling
+    area = float(region.sum()) / pixels_per_degree**2
     bands = []
-    for energy, frequency in zip(energies, frequencies, strict=True):
-        value = weighted_mean(energy, share) ** (1 / observer.pooling)
-        bands.append(Band(frequency=frequency, vwi=float(value)))
-        share = reduce(share)
+    for octave in octaves:
+        while share.shape != octave.visible.shape:
+            share = reduce(share)
+        contrast = np.asarray(weighted_mean(octave.contrast, share) ** root)
+        bands.append(
+            Band(
+                frequency=octave.frequency,
+                vwi=float((weighted_mean(octave.visible, share) * area) ** root),
+                apparent_contrast=float(_percent(contrast, observer)),
+            )
+        )
     return tuple(bands)
 
 

@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from seatlook.model import Appearance, Camera, Rig, sun
+from seatlook.visibility.view import Sampling
 from support.reference.lit_sheets import grid
 
 DEEP = 0.5e-3
+COARSE = Sampling("draft", 17.0)  # as a picture of 320 x 240 through ``oblique``
 BLACK = Appearance(albedo=np.full(3, 0.03), roughness=0.35)
 ROUGH = Appearance(albedo=np.full(3, 0.5), roughness=0.9)
 RIG = Rig(name="sun", lights=(sun(elevation_deg=50, azimuth_deg=90),), ambient=600.0)

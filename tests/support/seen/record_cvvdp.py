@@ -1,11 +1,9 @@
 """Record ColorVideoVDP of the 54 scenes into tests/data/cvvdp.json; run once, by hand.
 
-Given pictures that gallery/dusk.py kept, it prints instead what ColorVideoVDP says of their dusk.
-
 Needs packages that the project does not: cvvdp (MIT, without its dependencies), torch for the CPU,
 einops, imageio, matplotlib and tqdm. Of torchvision it takes only a Gaussian blur, of ffmpeg and
 huggingface_hub nothing for arrays, so these are stood in for here. From the folder ``tests``:
-``python -m support.seen.record_cvvdp [PICTURES.npz]``.
+``python -m support.seen.record_cvvdp``.
 """
 
 import importlib.metadata
@@ -14,7 +12,6 @@ import sys
 import types
 from pathlib import Path
 
-import numpy as np
 import torch
 
 from support.seen.ridges import PPD, SIZE, scenes
@@ -103,21 +100,5 @@ def record_scenes():
     path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 
-def tell_dusk(kept):
-    """Loss by day and the share of the wrinkles' height that looks as they do by dusk."""
-    kept = dict(np.load(kept))
-    mask, ppd = kept.pop("mask"), float(kept.pop("pixels_per_degree"))
-    heights = kept.pop("heights")
-    lost = observer(mask.shape[::-1], ppd)
-    for name, (reference, *wrinkled) in kept.items():
-        shown = [np.where(mask, picture, reference) for picture in wrinkled]
-        day = [0.0, *(lost(picture, reference) for picture in shown)]
-        dusk = lost(1e-3 * shown[-1], 1e-3 * reference)
-        sys.stdout.write(f"{name}: {day[-1]:.2f}, {np.interp(dusk, day, heights):.2f}\n")
-
-
 if __name__ == "__main__":
-    if len(sys.argv) > 1:
-        tell_dusk(sys.argv[1])
-    else:
-        record_scenes()
+    record_scenes()

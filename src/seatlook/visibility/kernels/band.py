@@ -1,22 +1,26 @@
-"""What one band of the pyramid adds to the visibility map."""
+"""Contrast and sensitivity in one band of the pyramid."""
 
 import math
 
 from numba import njit
+
+# What the octaves pass together of the contrast of a grating (Minkowski sum, exponent 3).
+PASSED = 0.687
 
 
 @njit(cache=True)
 def contrasts(test, reference, test_ground, reference_ground, darkest, change, shared):
     """Fill ``change = |C_T - C_R|`` and ``shared = min(|C_T|, |C_R|)``, each (h, w).
 
-    C is the band over its background; the backgrounds are replaced by the adaptation luminance.
+    C is the band over its background, so scaled that a grating has its own contrast over all;
+    the backgrounds are replaced by the adaptation luminance.
     """
     h, w = test.shape
     for i in range(h):
         for j in range(w):
             a, b = test_ground[i, j], reference_ground[i, j]
-            c_test = (test[i, j] - a) / max(a, darkest)
-            c_reference = (reference[i, j] - b) / max(b, darkest)
+            c_test = (test[i, j] - a) / (PASSED * max(a, darkest))
+            c_reference = (reference[i, j] - b) / (PASSED * max(b, darkest))
             change[i, j] = abs(c_test - c_reference)
             shared[i, j] = min(abs(c_test), abs(c_reference))
             test_ground[i, j] = max(0.5 * (a + b), darkest)
@@ -33,11 +37,11 @@ def sensitivity(luminance, table, lowest, per_octave):
 
 
 @njit(cache=True)
-def weigh(change, mask, adaptation, table, lowest, per_octave):
-    """Multiply ``change`` and ``mask`` (h, w) by S at the adaptation luminance, in place."""
-    h, w = change.shape
+def weigh(change, shared, adaptation, table, lowest, per_octave):
+    """Replace luminance by the change in thresholds, a shared contrast by its square in them."""
+    h, w = shared.shape
     for i in range(h):
         for j in range(w):
             s = sensitivity(adaptation[i, j], table, lowest, per_octave)
-            change[i, j] *= s
-            mask[i, j] *= s
+            adaptation[i, j] = change[i, j] * s
+            shared[i, j] = (shared[i, j] * s) ** 2

@@ -7,12 +7,22 @@ RIM = 2
 
 
 @njit(cache=True)
-def beyond(edge, inner):
-    """Sample outside the picture: the slope goes on, so that even shading stays without contrast.
+def beyond(edge, mirrored, step, rise):
+    """Sample ``step`` pixels outside the picture, so that even shading stays without contrast.
 
-    Kept within a factor two of the edge, since luminance must not turn negative.
+    What lies as far inside is mirrored, the slope goes on. Kept within a factor two of the edge,
+    since luminance must not turn negative.
     """
-    return min(max(2.0 * edge - inner, 0.5 * edge), 2.0 * edge)
+    return min(max(mirrored - 2.0 * step * rise, 0.5 * edge), 2.0 * edge)
+
+
+@njit(cache=True)
+def rise_of(line):
+    """Slope per pixel at the first end of a line, over eight pixels: a texture is no slope."""
+    n = min(4, line.size // 2)
+    if n == 0:
+        return 0.0
+    return (line[n : 2 * n].mean() - line[:n].mean()) / n
 
 
 @njit(cache=True)
@@ -21,16 +31,25 @@ def extend(image):
     h, w = image.shape
     out = np.empty((h + 2 * RIM, w + 2 * RIM))
     out[RIM:-RIM, RIM:-RIM] = image
-    for k in range(1, RIM + 1):
-        for j in range(w):
-            out[RIM - k, RIM + j] = beyond(image[0, j], image[min(k, h - 1), j])
-            out[RIM + h - 1 + k, RIM + j] = beyond(image[h - 1, j], image[max(h - 1 - k, 0), j])
-    first, last = RIM, RIM + w - 1
+    for j in range(w):
+        lengthen(out[:, RIM + j])
     for i in range(h + 2 * RIM):
-        for k in range(1, RIM + 1):
-            out[i, first - k] = beyond(out[i, first], out[i, min(first + k, last)])
-            out[i, last + k] = beyond(out[i, last], out[i, max(last - k, first)])
+        lengthen(out[i])
     return out
+
+
+@njit(cache=True)
+def lengthen(line):
+    """Fill the two samples at either end of a line from those between."""
+    inner = line[RIM:-RIM]
+    last = inner.size - 1
+    first_rise, last_rise = rise_of(inner), rise_of(inner[::-1])
+    for k in range(1, RIM + 1):
+        m = min(k, last)
+        line[RIM - k] = beyond(inner[0], inner[m], m, first_rise) if m else inner[0]
+        line[RIM + last + k] = (
+            beyond(inner[last], inner[last - m], m, last_rise) if m else inner[last]
+        )
 
 
 @njit(cache=True)
@@ -61,6 +80,26 @@ def blur(image):
         for j in range(w):
             outer, inner = row[j] + row[j + 4], row[j + 1] + row[j + 3]
             out[i, j] = (outer + 4.0 * inner + 6.0 * row[j + 2]) / 256.0
+    return out
+
+
+@njit(cache=True)
+def soften(image):
+    """Smooth by (1 6 1)/8, size kept.
+
+    Without it the finest band, which has no finer one above it, would pass 1.6 times what the
+    others do; with it all pass the same within 2 dB, up to 0.4 cycles per pixel.
+    """
+    h, w = image.shape
+    rim = extend(image)
+    out = np.empty((h, w))
+    row = np.empty(w + 2 * RIM)
+    for i in range(h):
+        above, middle, below = rim[i + 1], rim[i + 2], rim[i + 3]
+        for j in range(row.size):
+            row[j] = above[j] + below[j] + 6.0 * middle[j]
+        for j in range(w):
+            out[i, j] = (row[j + 1] + row[j + 3] + 6.0 * row[j + 2]) / 64.0
     return out
 
 
