@@ -129,13 +129,13 @@ def test_recipe_material(clone):
 
 def test_recipe_light(clone):
     clone.insert(
-        "model/light.py",
+        "model/light/lamps.py",
         "LIGHTS: dict",
         "def torch(*, candela: float, place_mm: tuple[float, float, float]) -> Light:\n"
         "    vector = np.asarray(place_mm) / 1e3\n"
         '    return Light(name="torch", intensity=candela, vector=vector, near=True)\n\n\n',
     )
-    clone.insert("model/light.py", '"sun": sun', '"torch": torch, ')
+    clone.insert("model/light/lamps.py", '"sun": sun', '"torch": torch, ')
     light = '[[rig.light]]\nkind = "torch"\ncandela = 7.0\nplace_mm = [1, 2, 3]\n\n'
     scene = clone.scene(("[[rig.light]]", light + "[[rig.light]]"))
     found = clone.load(
@@ -145,7 +145,9 @@ def test_recipe_light(clone):
 
 
 def test_recipe_view(clone):
-    clone.insert("model/light.py", '"driver_door": (75', '"rear_45": (150.0, 40.0, 1.9),\n        ')
+    clone.insert(
+        "model/light/camera.py", '"driver_door": (75', '"rear_45": (150.0, 40.0, 1.9),\n        '
+    )
     scene = clone.scene(('views = ["top"]', 'views = ["rear_45"]'))
     found = clone.load(scene, "scene.cameras[0].name, scene.cameras[0].position[1] > 0")
     assert found == "rear_45 True"

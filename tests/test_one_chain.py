@@ -105,6 +105,24 @@ def test_the_page(folder, expected):
     assert worst["zone"] in page
 
 
+def test_every_way_names_mode_and_threshold(folder, expected, capsys):
+    """Both materials' own thresholds, in every table, and the other mode where it is asked for."""
+    said = {row["zone"]: row["criterion"] for row in expected}
+    assert said["LEFT interior"] == "tensor, 0.0167 per mm"
+    assert said["RIGHT interior"] == "tensor, 0.05 per mm"
+    assert "tensor, 0.0167 to 0.05 per mm" in said.values()
+    page = (folder / "out/index.html").read_text()
+    assert all(criterion in page for criterion in said.values())
+    result = str(folder / "out/result.npz")
+    assert run(["wrinkle", result]) in (0, 3)
+    printed = capsys.readouterr().out
+    assert all(criterion in printed for criterion in said.values())
+    assert run(["wrinkle", result, "--mode", "paper", "--json"]) in (0, 3)
+    zones = json.loads(capsys.readouterr().out)["zones"]
+    assert all(row["criterion"].startswith("paper, ") for row in zones)
+    assert not any(key in zones[0] for key in ("area", "element_size"))
+
+
 def test_one_refusal_by_all_ways(tmp_path, capsys):
     scene = write_scene(tmp_path)
     seams = tmp_path / "seams.toml"

@@ -24,7 +24,7 @@ NAMES = tuple(f"z{k}" for k in range(12))
 
 def row(zone, mean, **companions):
     return ZoneRow(
-        zone=zone, area=1.0, element_size=0.0, stretch_share=0.0, w2_face_rms=0.0,
+        zone=zone, criterion="", area=1.0, element_size=0.0, stretch_share=0.0, w2_face_rms=0.0,
         figures=MappingProxyType({"w2_mean": float(mean)}), **companions,
     )  # fmt: skip
 

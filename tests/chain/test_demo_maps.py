@@ -6,7 +6,7 @@ import pytest
 from seatlook.chain.assess import assess
 from seatlook.mesh.kinematics import principal_values
 from seatlook.model.zones import FREE_EDGE
-from seatlook.visibility.view import on_foam
+from seatlook.visibility.reference import on_foam
 from seatlook.wrinkle import shape_curvature
 
 pytestmark = pytest.mark.validate

@@ -15,6 +15,7 @@ from support.scenes import two_panels
 def zone_row(zone, area, mean):
     return ZoneRow(
         zone=zone,
+        criterion="tensor, 0.02 per mm",
         area=area,
         element_size=0.0,
         stretch_share=0.0,

@@ -93,7 +93,10 @@ def test_materials_as_data(capsys):
         "roughness": None,
     }
     assert run(["materials", "show", "suede"]) == 0
-    assert "[fabric]" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "[fabric]" in out
+    assert "# L* a* b* by 45/0: " in out
+    assert "# gloss units: " in out
 
 
 def test_a_fault_of_seatlook_is_told_from_wrong_input(capsys, monkeypatch):

@@ -121,7 +121,10 @@ def test_flatten_writes_a_pattern_and_its_strains(demo_scene, tmp_path, capsys):
     rows = json.loads(capsys.readouterr().out)
     assert {row["panel"] for row in rows} >= {"INSERT", "BOLSTER_L", "REAR"}
     assert all(
-        row["strain_smallest"] <= row["strain_mean"] <= row["strain_largest"] for row in rows
+        row["strain_smallest_percent"]
+        <= row["strain_mean_percent"]
+        <= row["strain_largest_percent"]
+        for row in rows
     )
     pattern = io.read_pattern(tmp_path / "pattern.dxf", tmp_path / "seams.toml")
     assert len(pattern.seams) == 14

@@ -176,6 +176,8 @@ def test_two_results_are_compared_in_one_range(waves, tmp_path, capsys):
     assert {p.name for p in tmp_path.glob("*.csv")} == {
         "zones.csv",
         "worst.csv",
+        "seam-excess.csv",
+        "advice.csv",
         "sections.csv",
         "distortion.csv",
     }

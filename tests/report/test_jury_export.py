@@ -53,7 +53,17 @@ def test_scenes_of_one_name_are_told_apart_by_their_folders(wrinkled, tmp_path):
     )  # fmt: skip
     sessions = json.loads(result.key.read_text())["sessions"]
     assert [len(session["trials"]) for session in sessions] == 3 * [result.comparisons]
+    assert questionnaire.questions == ("seen", "wrinkles")
     assert any("8 to 12 screen judges" in notice for notice in result.notices)
+
+
+def test_the_questions_may_be_chosen_and_are_known(wrinkled, tmp_path):
+    words = {"rigs": ["sun"], "judges": 1, "width": 120}
+    both = cases(wrinkled, ["fits", "eased"])
+    asked = seatlook.export_jury(both, tmp_path, questions=["preference"], **words)
+    assert asked.questionnaire.questions == ("preference",)
+    with pytest.raises(InputError, match="got 'beauty', expected one of seen, wrinkles, pref"):
+        seatlook.export_jury(both, tmp_path, questions=["beauty"], **words)
 
 
 def test_a_name_that_no_scene_has_leaves_nothing(wrinkled, tmp_path):

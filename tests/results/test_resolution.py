@@ -91,7 +91,7 @@ def test_eight_elements_to_a_wave_resolve_it_and_fewer_do_not(per_wave):
     assert found.unresolved.all() == (not own.resolved)
     if not own.resolved:
         assert own.sentence in found.reason
-        assert f"; {largest_size(wave):g} mm resolve it" in own.sentence
+        assert f"--element-size-mm {largest_size(wave):g} resolves them" in own.sentence
         assert largest_size(wave) * 1e-3 <= wave / PER_WAVE
 
 

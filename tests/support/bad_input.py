@@ -16,6 +16,7 @@ from seatlook.errors import InputError
 from seatlook.files import MIB
 from seatlook.io import npz, panorama, texture_maps, toml
 from support.fuzz.formats import FORMATS
+from support.lab_files import IN_NEWTON, STRIP
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "bad-input.md"
 _TEXT = """# Wrong input
@@ -72,6 +73,31 @@ _WRONG: dict[str, tuple[tuple[str, str, str], ...]] = {
         ("a curve that falls", "stress_kpa = [0", "stress_kpa = [9"),
         ("a Poisson ratio of 3", "poisson = 0", "poisson = 3"),
         ("no curve", "strain", "# strain"),
+    ),
+    "tests": (
+        ("a key mistyped", "direction", "direktion"),
+        ("a direction missing", 'direction = "warp"', ""),
+        ("a kind that there is not", '"shear"', '"sheer"'),
+        ("a unit that there is not", 'unit = "%"', 'unit = "percent"'),
+        ("a column that there is not", '"strain"', '"stroke"'),
+        ("a file that is not there", '"strip.csv"', '"stripe.csv"'),
+        ("N for N/m", 'unit = "N/m" } # force', 'unit = "N" }'),
+        ("sides not said", 'sides = "held"', ""),
+        ("strain in parts, not in %", 'unit = "%"', 'unit = "1"'),
+        ("swapped columns", '"strain", unit = "%" }\nforce = { column = "force"',
+         '"force", unit = "%" }\nforce = { column = "strain"'),
+        ("the pretension not said", "pretension_n_per_m = 9.8", ""),
+        ("G without its angles", "g_between_deg = [0.5, 2.5]", ""),
+        ("2HB without its curvature", "hb_at_per_cm = 1.0", ""),
+        ("no laboratory", "laboratory", "# laboratory"),
+    ),
+    "curve": (
+        ("a number that is none", "1.0,", "1.O,"),
+        ("a cell missing", "2.0,150.0", "2.0,"),
+        ("a unit in the head that is another one", "force", "force [N]"),
+        ("a curve that falls", STRIP[STRIP.index("10.0,") :], "10.0,300\n11.0,280\n12.0,250\n"),
+        ("seven points", STRIP[STRIP.index("7.0,") :], ""),
+        ("N that are called N/m", STRIP.partition("\n")[2], IN_NEWTON),
     ),
     "sweep": (
         ("no scene", 'scene = "scene.toml"', ""),
@@ -153,7 +179,7 @@ def _cases(name: str, whole: bytes) -> Iterator[tuple[str, bytes | str]]:
     for what, old, new in wrong:
         assert old.encode() in whole, (name, old)
         yield what, whole.replace(old.encode(), new.encode(), 1)
-    if name in ("scene", "seams", "curves", "material", "foam material", "sweep"):
+    if name in ("scene", "seams", "curves", "material", "foam material", "sweep", "tests"):
         yield "UTF-16", whole.decode().encode("utf-16")
         yield "Latin-1", whole + b"\n# \xe4\n"
 
@@ -210,7 +236,7 @@ def limits() -> Iterator[str]:
     """Yield the rows of the limits."""
     for what, limit in (
         ("any file that is read at once", f"{files.LARGEST_FILE // MIB} MiB"),
-        ("scene, seams, curves, material, sweep, votes", f"{files.LARGEST_TEXT // MIB} MiB"),
+        ("scene, seams, curves, material, tests, sweep, votes", f"{files.LARGEST_TEXT // MIB} MiB"),
         ("tables and arrays in each other", f"{toml.DEEPEST}"),
         ("arrays of a result, unpacked", f"{npz.LARGEST // MIB} MiB"),
         ("picture of a texture", f"{texture_maps.LARGEST_PIXELS} pixels"),

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from seatlook.model import Cover, Solution
+from seatlook.model import Cover, Solution, Stitching
 from seatlook.solver.element.elastic import ElasticSheet
+from support.covers import points_along, row
 from support.meshes import rectangle
 from support.scenes import fabric, material
 
@@ -45,3 +46,30 @@ def wave(amplitude, wavelength):
     """A sine along the first axis; the sheet is not stretched to first order."""
     k = 2 * np.pi / wavelength
     return lambda X: np.column_stack([X, amplitude * np.sin(k * X[:, 0])])
+
+
+def sewn(shape, *, h=0.005, notches=(), **options):
+    """Two panels sewn at the right border of P0 and the left one of P1, notches at shares of it."""
+    plain = shaped(shape, h=h, panels=2, **options)
+    rest = plain.cover.rest
+    count = round(SIZE / h) + 1
+    at = np.linspace(0.0, 1.0, count)
+    a, b = (points_along(rest, row(rest, 0, x), at) for x in (SIZE, 0.2))
+    seam = Stitching(
+        name="P0-P1", a=a, b=b, length=np.full(count, h), stage="end",
+        notches=np.array(notches) * (count - 1),
+    )  # fmt: skip
+    return shaped(shape, h=h, panels=2, stitchings=(seam,), **options)
+
+
+def stretched_along(strain_a, strain_b):
+    """Shape of two panels whose strain along their seam is a function of the distance from it."""
+
+    def shape(X):
+        first = X[:, 0] < 0.16
+        distance = np.where(first, SIZE - X[:, 0], X[:, 0] - 0.2)
+        strain = np.where(first, strain_a(distance), strain_b(distance))
+        y = X[:, 1] - SIZE / 2
+        return np.column_stack([X[:, 0], SIZE / 2 + y * (1.0 + strain), np.zeros(len(X))])
+
+    return shape

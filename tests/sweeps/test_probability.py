@@ -25,7 +25,7 @@ def cells(folder, **status):
             (folder / f"{name}.failed.json").write_text('{"error": "SolverError"}')
         elif value is not None:
             np.save(folder / f"{name}.npy", W2.get(name, [9.0, 9.0]))
-            zone = {"zone": "insert", "area": 1.0, "w2_mean": 0.5, "w2_p95": 1.0}
+            zone = {"zone": "insert", "area_cm2": 1.0, "w2_mean": 0.5, "w2_p95": 1.0}
             zone |= {"w2_area_share": 0.0, "w_stretch_mean": 0.1, "w_compression_mean": 0.4}
             result = {"variant": "", "status": value, "set": [], "inputs": [], "values": []}
             (folder / f"{name}.json").write_text(json.dumps(result | {"zones": [zone]}))

@@ -137,6 +137,30 @@ def test_low_pass_has_the_transfer_it_says(wavelength, kept):
     assert (z @ before) / (before @ before) == pytest.approx(kept, abs=0.02)
 
 
+@pytest.mark.parametrize(("along", "kept"), [(0.015, 16 / 17), (0.060, 1 / 17)])
+def test_low_pass_by_direction(along, kept):
+    """A wave of 30 mm along x goes by the length along x alone."""
+    solution = shaped(wave(0.0005, 0.030), h=0.0025, size=0.18, kind="right")
+    cover = solution.cover
+    length = np.tile(np.diag([along, 0.01]), (len(cover.faces), 1, 1))
+    smooth = wrinkle.low_passed(cover, solution.positions, wavelength=length)
+    middle = (np.abs(cover.rest - 0.09) < 0.045).all(axis=1)
+    z, before = smooth[middle, 2], solution.positions[middle, 2]
+    assert (z @ before) / (before @ before) == pytest.approx(kept, abs=0.02)
+
+
+def test_the_same_length_in_all_directions_is_that_of_one_number():
+    solution = shaped(wave(0.0005, 0.020), h=0.0025)
+    length = np.tile(0.03 * np.eye(2), (len(solution.cover.faces), 1, 1))
+    np.testing.assert_allclose(
+        wrinkle.low_passed(solution.cover, solution.positions, wavelength=length),
+        wrinkle.low_passed(solution.cover, solution.positions, wavelength=0.03),
+        atol=1e-12,
+    )
+    with pytest.raises(InputError, match=r"wavelength: got -0\.03, expected above 0"):
+        wrinkle.low_passed(solution.cover, solution.positions, wavelength=-length)
+
+
 def test_a_part_of_the_low_pass_is_that_of_the_whole():
     """At one and a half wavelengths from what is held the difference is 1 in 700 of a wave."""
     solution = shaped(wave(0.0005, 0.02), h=0.0025, size=0.24, kind="right")

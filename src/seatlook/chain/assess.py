@@ -31,17 +31,21 @@ from seatlook.results.resolution import Resolution, resolution
 from seatlook.wrinkle import (
     DESIGN_WAVELENGTH,
     INDICES,
+    Advice,
     Distortion,
     DistortionRow,
+    SeamStretch,
     Section,
     Surface,
     Wrinkle,
     ZoneRow,
+    advise,
     beside_sections,
     distortion,
     distortion_table,
     low_passed,
     map_top,
+    seam_excess,
     section_across,
     worst_wrinkles,
     wrinkle_indices,
@@ -155,6 +159,7 @@ class Assessment:
         return zone_table(
             self.solution.cover,
             {name: self.values(name) for name in INDICES},
+            criteria=self.criteria,
             unresolved=self.resolution.unresolved,
             known=self.solution.figures,
         )
@@ -173,10 +178,30 @@ class Assessment:
 
     @cached_property
     def wrinkles(self) -> tuple[Wrinkle, ...]:
-        """The five worst wrinkles, the worst first; no advice on those that are not resolved."""
+        """The five worst wrinkles, the worst first; then what lies at ties and corners."""
         return worst_wrinkles(
-            self.solution, self.indices, count=WORST, unresolved=self.resolution.unresolved
+            self.solution,
+            self.indices,
+            count=WORST,
+            unresolved=self.resolution.unresolved,
+            wavelengths=self._wavelengths,
         )
+
+    @property
+    def _wavelengths(self) -> tuple[float | None, ...]:
+        """Wavelength [m] of the shortest wrinkle of each panel, None where there is no foam."""
+        known = {wave.material: wave.wavelength for wave in self.resolution.waves}
+        return tuple(known.get(material.name) for material in self.solution.cover.materials)
+
+    @cached_property
+    def stretches(self) -> tuple[SeamStretch, ...]:
+        """By how much one side of every seam is too long, from notch to notch."""
+        return seam_excess(self.solution, unresolved=self.resolution.unresolved)
+
+    @cached_property
+    def advice(self) -> tuple[Advice, ...]:
+        """What to change, the largest first: seams, then wrinkles that no seam explains."""
+        return advise(self.solution, self.stretches, self.wrinkles)
 
     @cached_property
     def sections(self) -> tuple[Section, ...]:

@@ -44,7 +44,7 @@ from seatlook.solver import SolverSettings, solve
 from seatlook.visibility.light_search import WorstLight, worst_lights
 from seatlook.visibility.reference import CUTOFF, Mode
 from seatlook.visibility.scoring import SceneScore, score_scene
-from seatlook.visibility.view import View
+from seatlook.visibility.view import SAMPLING, Sampling, View
 from seatlook.wrinkle import INDICES
 
 if TYPE_CHECKING:
@@ -299,11 +299,9 @@ class Case:
         dict
             texture -> "sun" or "bulb" -> the worst light.
         """
-        seen = self.camera(camera)
-        width, height = seen.size
         # A quarter of the pixels of a score will do.
-        small = replace(seen, size=(width // 2, height // 2))
-        view = View(self.solution, small, mode=mode, quality="draft")
+        coarse = Sampling("draft", SAMPLING.pixels_per_degree / 2)
+        view = View(self.solution, self.camera(camera), mode=mode, sampling=coarse)
         return worst_lights(view, self.narrowed(textures).textures, progress=progress)
 
     def shape(self) -> tuple[ZoneGap, ...]:

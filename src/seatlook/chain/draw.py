@@ -65,10 +65,16 @@ class Canvas:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exposures:
-    """How pictures are shown: quality, tone curve, and whether the radiance is kept (npy, exr)."""
+    """How pictures are shown: quality, tone curve, and whether the radiance is kept (npy, exr).
+
+    ``white``: ``exposure``, or ``card``: a white card facing the light is white, for a review of
+    colours; ``adaptation``: to the colour of the light, 0 to 1.
+    """
 
     quality: str = "standard"
     tone: str = "clamp"
+    white: str = "exposure"
+    adaptation: float = 1.0
     radiance: str | None = None
 
 
@@ -101,7 +107,13 @@ def draw_pictures(
                 camera=canvas.camera,
                 quality=chosen.quality,
             )
-            replace(image, tone=chosen.tone).save(path, run=canvas.run)
+            shown = replace(
+                image,
+                tone=chosen.tone,
+                review=chosen.white == "card",
+                adaptation=chosen.adaptation,
+            )
+            shown.save(path, run=canvas.run)
             if chosen.radiance is not None:
                 image.save(path.with_suffix(f".{chosen.radiance}"))
             pictures[texture, rig.name] = names[texture, rig.name]

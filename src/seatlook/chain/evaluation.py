@@ -23,7 +23,8 @@ from seatlook.model.progress import Progress, silent
 # Patterns of all that a run leaves, and its page.
 LEFT = (
     "index.html", "result.npz", "zones.csv", "shape.csv", "seam-lines.csv", "worst.csv",
-    "sections.csv", "distortion.csv", "images/**/*.png", "maps/**/*.png",
+    "seam-excess.csv", "advice.csv", "sections.csv", "distortion.csv",
+    "images/**/*.png", "maps/**/*.png",
 )  # fmt: skip
 GAP = "from the drawn foam to the cover: below 0 the foam is pressed in"
 DEVIATION = "distance from the design surface: above 0 outside, below 0 inside"

@@ -14,11 +14,12 @@ from seatlook.model import Scene, Solution
 from seatlook.results.deviation import SeamLine
 from seatlook.results.gap import ZoneGap
 from seatlook.solver import SETTINGS
-from seatlook.wrinkle import DistortionRow, Section, Wrinkle, ZoneRow
+from seatlook.wrinkle import DistortionRow, Section, Wrinkle, ZoneRow, advice_on
 
 RESULT, ZONES = "result.npz", "zones.csv"
 SHAPE, SEAM_LINES = "shape.csv", "seam-lines.csv"
 WORST, SECTIONS, DISTORTION = "worst.csv", "sections.csv", "distortion.csv"
+EXCESS, ADVICE = "seam-excess.csv", "advice.csv"
 
 Row = Mapping[str, object]
 
@@ -82,9 +83,10 @@ def write_shape(assessment: Assessment, out: Path) -> tuple[str, ...]:
 def write_findings(
     assessment: Assessment, out: Path, *, distortion: bool = True
 ) -> tuple[str, ...]:
-    """Write the worst wrinkles, sections across them and the distortion; return the names."""
-    rows = [wrinkle_row(rank, w) for rank, w in enumerate(assessment.wrinkles, 1)]
-    _write(rows, out / WORST, heads=("rank",))
+    """Write wrinkles, seams, advice, sections and the distortion; return the files' names."""
+    _write(wrinkle_rows(assessment), out / WORST, heads=("rank",))
+    _write(stretch_rows(assessment), out / EXCESS, heads=("seam",))
+    _write(advice_rows(assessment), out / ADVICE, heads=("action",))
     io.write_table(
         out / SECTIONS,
         ("rank", "along_mm", "height_mm", "intended_mm"),
@@ -95,13 +97,13 @@ def write_findings(
         ],
     )
     if not distortion:
-        return WORST, SECTIONS
+        return WORST, EXCESS, ADVICE, SECTIONS
     _write(
         [asdict(row) for row in assessment.distortion_rows],
         out / DISTORTION,
         heads=DistortionRow.__slots__,
     )
-    return WORST, SECTIONS, DISTORTION
+    return WORST, EXCESS, ADVICE, SECTIONS, DISTORTION
 
 
 def gap_rows(zones: Sequence[ZoneGap]) -> list[dict[str, object]]:
@@ -130,12 +132,24 @@ def seam_line_rows(seams: Sequence[SeamLine]) -> list[dict[str, object]]:
     ]
 
 
-def wrinkle_row(rank: int, w: Wrinkle) -> dict[str, object]:
-    """Return one wrinkle as key -> value, units in the keys."""
+def wrinkle_rows(assessment: Assessment) -> list[dict[str, object]]:
+    """Return the worst wrinkles as key -> value, units in the keys, the advice on each last."""
+    return [
+        _wrinkle_row(rank, w)
+        | {
+            "criterion": assessment.criteria.words(),
+            "advice": advice_on(w, rank, assessment.advice),
+        }
+        for rank, w in enumerate(assessment.wrinkles, 1)
+    ]
+
+
+def _wrinkle_row(rank: int, w: Wrinkle) -> dict[str, object]:
     x, y, z = (1e3 * w.position).tolist()
     u, v = (1e3 * w.uv).tolist()
     return {
         "rank": rank,
+        "kind": w.kind,
         "panel": w.panel,
         "zone": w.zone,
         "cause": w.cause,
@@ -143,6 +157,9 @@ def wrinkle_row(rank: int, w: Wrinkle) -> dict[str, object]:
         "length_mm": 1e3 * w.length,
         "width_mm": 1e3 * w.width,
         "depth_mm": 1e3 * w.depth,
+        "excess_mm": 1e3 * w.excess,
+        "waves_mm": 1e3 * w.waves,
+        "scatter_mm": 1e3 * w.scatter,
         "w2_max": w.w2_max,
         "w2_area_cm2": 1e4 * w.w2_area,
         "x_mm": x,
@@ -152,10 +169,48 @@ def wrinkle_row(rank: int, w: Wrinkle) -> dict[str, object]:
         "v_mm": v,
         "near": f"{w.near_kind} {w.near}".strip() or None,
         "distance_mm": 1e3 * w.distance if w.near_kind else None,
-        "ease_percent": 100 * w.ease if w.near_kind == "seam" else None,
         "resolved": w.resolved,
-        "advice": w.advice,
     }
+
+
+def stretch_rows(assessment: Assessment) -> list[dict[str, object]]:
+    """Return what every seam has too much, from notch to notch, in the order of the seams."""
+    return [
+        {
+            "seam": s.seam,
+            "from": s.begin,
+            "to": s.end,
+            "longer": s.long_panel,
+            "shorter": s.short_panel,
+            "length_mm": 1e3 * s.length,
+            "excess_mm": 1e3 * s.excess,
+            "scatter_mm": 1e3 * s.scatter,
+            "excess_percent": 100 * s.share,
+            "compression_mm": 1e3 * s.compression,
+            "tension_mm": 1e3 * s.tension,
+            "waves_mm": 1e3 * s.waves,
+            "resolved": s.resolved,
+        }
+        for s in assessment.stretches
+    ]
+
+
+def advice_rows(assessment: Assessment) -> list[dict[str, object]]:
+    """Return what to change, the largest first."""
+    return [
+        {
+            "action": a.action,
+            "panel": a.panel,
+            "seam": a.seam or None,
+            "place": a.place,
+            "amount_mm": 1e3 * a.amount,
+            "scatter_mm": 1e3 * a.scatter,
+            "confidence": a.confidence,
+            "wrinkles": " ".join(map(str, a.wrinkles)) or None,
+            "advice": a.sentence,
+        }
+        for a in assessment.advice
+    ]
 
 
 def _section_points(rank: int, cut: Section) -> list[tuple[object, ...]]:

@@ -1,17 +1,72 @@
-"""A view and a light for a cover that no scene describes."""
+"""A view and a light for a cover that no scene describes; views in which places are seen."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
-from seatlook.mesh import face_vectors
-from seatlook.model import Camera, FloatArray, Light, Rig, Solution
+from seatlook.mesh import face_normals, face_vectors
+from seatlook.mesh.sight import is_seen
+from seatlook.model import VIEWS, Camera, FloatArray, Light, Rig, Solution, framed_view
 
 _FOV = 16.2  # [deg] vertical, that of the named views
 _TILT = np.radians(35.0)  # of the view against the mean normal
 _LIGHT_TILT = np.radians(55.0)  # of the light, to the other side
 _SUN = 97_000.0  # [lx] on a facing plane
 _SKY = 4_000.0  # [cd/m2]
+_LIFT = 1e-3  # [m] above the cloth, so that a place does not hide itself
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mark:
+    """Where a place of a cover is seen.
+
+    Parameters
+    ----------
+    camera : the one asked for, if it sees the place; else the named view that sees it most
+        squarely; None where the cover hides it from all of them
+    x, y : float [pixels]    in that camera's picture, from the top left
+    """
+
+    camera: Camera | None
+    x: float = 0.0
+    y: float = 0.0
+
+
+def marks(solution: Solution, places: Sequence[FloatArray], camera: Camera) -> tuple[Mark, ...]:
+    """Find places (3,) [m] of a cover in the picture of a camera, or in a view that sees them."""
+    if not places:
+        return ()
+    at = np.array(places)
+    centre = solution.positions[solution.cover.faces].mean(axis=1)
+    face = [int(np.linalg.norm(centre - place, axis=1).argmin()) for place in at]
+    normal = face_normals(solution.positions, solution.cover.faces)[face]
+    views = [framed_view(name, solution.positions, size=camera.size) for name in VIEWS]
+    cameras = [camera, *(view for view in views if view.name != camera.name)]
+    squarely = np.array([_squarely(solution, view, at, normal) for view in cameras])
+    chosen = np.where(squarely[0] > 0, 0, squarely.argmax(axis=0))
+    return tuple(
+        Mark(camera=cameras[c], **dict(zip("xy", cameras[c].pixel(place), strict=True)))
+        if squarely[c, k] > 0
+        else Mark(camera=None)
+        for k, (c, place) in enumerate(zip(chosen.tolist(), at, strict=True))
+    )
+
+
+def _squarely(
+    solution: Solution, camera: Camera, places: FloatArray, normal: FloatArray
+) -> FloatArray:
+    """Cosine (k,) from the normals (k, 3) of places to the camera; 0 for those it cannot see."""
+    away = camera.position - places
+    cosine = np.einsum("kd,kd->k", away, normal) / np.linalg.norm(away, axis=1)
+    pixels, depth = camera.pixels(places)
+    inside = (depth > 0) & ((pixels >= 0) & (pixels < camera.size)).all(axis=1)
+    seen = is_seen(
+        places + _LIFT * normal, camera.position, solution.positions, solution.cover.faces
+    )
+    return np.where(inside & seen, np.maximum(cosine, 0.0), 0.0)
 
 
 def fitted_view(solution: Solution, *, size: tuple[int, int] = (1280, 720)) -> Camera:

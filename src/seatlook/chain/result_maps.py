@@ -49,7 +49,7 @@ def other_criteria(
 def draw_result(
     assessment: Assessment, out: Path, *, camera: Camera | None = None, progress: Progress
 ) -> None:
-    """Write maps, ``zones.csv``, ``worst.csv``, ``sections.csv`` and ``distortion.csv``.
+    """Write maps and the tables of zones, wrinkles, seams, advice, sections and distortion.
 
     Parameters
     ----------

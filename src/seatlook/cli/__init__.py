@@ -6,6 +6,7 @@ from seatlook.cli import (
     _demo,
     _evaluate,
     _flatten,
+    _identify,
     _init,
     _jury,
     _machine,
@@ -39,6 +40,7 @@ app.command(_compare.compare)
 app.command(_sweep.sweep)
 app.command(_render.render)
 app.command(_machine.materials)
+app.command(_identify.identify)
 app.command(_machine.doctor)
 app.command(_score.score)
 app.command(_jury.jury)

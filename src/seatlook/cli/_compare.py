@@ -18,11 +18,12 @@ from seatlook.cli._options import (
     exit_code_of,
     seat_of,
 )
-from seatlook.cli._output import Json, note, progress, say, table
+from seatlook.cli._output import Json, note, progress, say, show_json, table, write
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
     from seatlook.chain.case import Case
+    from seatlook.seat import ComparisonOutcome
 
 
 def compare(
@@ -81,12 +82,44 @@ def compare(
             variants, out, results=_results(result, names),
             score=score, single_file=single_file, progress=show,
         )  # fmt: skip
-    differences = outcome.comparison.judged()
-    table(differences.heads, differences.rows, json=json)
+    _print(outcome, json=json)
     note(f"gallery: {outcome.page}")
     say(*filter(None, [outcome.comparison.unequal_error]))
     found = outcome.resolutions
     return exit_code_of(*found.values(), names=tuple(found), preview=preview)
+
+
+def _print(outcome: ComparisonOutcome, *, json: bool) -> None:
+    """What changed in the inputs, where it got worse, then better; the same for appearance."""
+    from seatlook.comparison.changes import difference_tables, sight_changes, zone_changes
+    from seatlook.model.table import Table
+    from seatlook.report.sections.inputs import different_inputs
+
+    variants, scores = outcome.comparison.variants, outcome.scores
+    tables = {
+        "What changed": different_inputs({n: case.scene for n, case in variants.items()})
+    } | difference_tables(
+        outcome.comparison,
+        zone_changes(outcome.comparison),
+        sight_changes(scores) if scores else (),
+    )
+    tables["W2 by"] = Table(
+        heads=("variant", "criterion"),
+        rows=tuple((name, case.assessment.criteria.words()) for name, case in variants.items()),
+    )
+    if json:
+        show_json(
+            {
+                name: [dict(zip(part.heads, row, strict=True)) for row in part.rows]
+                for name, part in tables.items()
+            }
+        )
+        return
+    for name, part in tables.items():
+        write(f"{name}{'' if part.rows else ': none'}\n")
+        if part.rows:
+            table(part.heads, part.rows, json=False)
+        write("\n")
 
 
 def _results(words: tuple[str, ...], names: tuple[str, ...]) -> MappingProxyType[str, Path]:

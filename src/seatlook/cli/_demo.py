@@ -76,7 +76,6 @@ def demo(
     if bolster_mm is not None and shape in SHAPES and SHAPES[shape].bolster is None:
         note(f"the {shape} has no bolsters: --bolster-mm changes nothing")
     with run_folder(out, writes=LEFT, force=force), progress() as show:
-        show("flatten")
         scene = write_demo(
             out,
             shape=shape,
@@ -89,6 +88,7 @@ def demo(
             insert=insert,
             element_size_mm=element_size_mm,
             seed=seed or 0,
+            progress=show,
         )
     note(f"scene: {scene}")
     if files_only:

@@ -124,6 +124,7 @@ def print_zones(zones: Sequence[ZoneRow], found: Resolution | None, *, json: boo
             "w2_scatter",
             "stretch_share",
             "element_size_mm",
+            "criterion",
         ),
         [
             (
@@ -134,6 +135,7 @@ def print_zones(zones: Sequence[ZoneRow], found: Resolution | None, *, json: boo
                 row.w2_scatter,
                 row.stretch_share,
                 1e3 * row.element_size,
+                row.criterion,
             )
             for row in zones
         ],

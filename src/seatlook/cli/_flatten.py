@@ -9,9 +9,11 @@ from cyclopts import Parameter
 
 from seatlook.cli._mend import MendingOptions
 from seatlook.cli._options import Out
-from seatlook.cli._output import Json, note, table
+from seatlook.cli._output import Json, note, progress, table
 from seatlook.cli._shares import Shares, shares
 from seatlook.io.surface.axes import Unit, Up
+
+NO_SCENE = "no scene yet, as there is no foam: seatlook init --from {} FOAM"
 
 
 def flatten(
@@ -97,21 +99,27 @@ def flatten(
         allowance=allowance_mm / 1e3,
         fabric=fabric,
     )
-    if foam is None:
-        made = flatten_surface(surface, out, **how)
-        note(f"no scene yet, as there is no foam: seatlook init --from {out} FOAM")
-    else:
-        made, scene = flatten_scene(
-            surface, foam, out, flattening=how,
-            material=material or "leather-laminate", foam_material=foam_material, wires=wires,
-            foam_unit=unit, foam_up=up,
-            foam_mending=(mending or MendingOptions()).choices(), name=surface.stem, force=force,
-        )  # fmt: skip
-        note(*scene.notes)
+    notes: tuple[str, ...]
+    with progress() as show:
+        how["progress"] = show
+        if foam is None:
+            made = flatten_surface(surface, out, **how)
+            notes = (NO_SCENE.format(out),)
+        else:
+            made, scene = flatten_scene(
+                surface, foam, out, flattening=how,
+                material=material or "leather-laminate", foam_material=foam_material, wires=wires,
+                foam_unit=unit, foam_up=up,
+                foam_mending=(mending or MendingOptions()).choices(), name=surface.stem,
+                force=force,
+            )  # fmt: skip
+            notes = scene.notes
+    note(*notes)
     note(f"pictures of the strain: {made.pictures[0].parent}")
-    heads = ["panel", "area_cm2", "strain_mean", "strain_rms", "strain_smallest", "strain_largest"]
+    figures = ("mean", "rms", "smallest", "largest")
+    heads = ["panel", "area_cm2", *(f"strain_{name}_percent" for name in figures)]
     panels = made.flat.panels
-    rows = [[p.panel, 1e4 * p.area, p.mean, p.rms, p.smallest, p.largest] for p in panels]
+    rows = [[p.panel, 1e4 * p.area, *(100 * getattr(p, n) for n in figures)] for p in panels]
     if fabric is not None:
         heads.append("energy_mj")
         rows = [[*r, 1e3 * (p.energy or 0.0)] for r, p in zip(rows, panels, strict=True)]

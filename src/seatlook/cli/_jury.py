@@ -56,6 +56,7 @@ def export(
     view: str | None = None,
     judges: int = 20,
     seed: int = 1,
+    ask: Names = (),
     title: str = "Seat covers",
     width_px: int = 900,
     ties: Annotated[bool, Parameter(negative=())] = False,
@@ -80,6 +81,10 @@ def export(
         Sessions to prepare; every judge takes another one.
     seed
         Of code names, order and sides.
+    ask
+        Question: seen ("In which one can you see a wrinkle more easily?"), wrinkles ("Which one
+        looks more wrinkled?") or preference ("Which one would you rather have?"); may be given more
+        than once. The first two if not given.
     title
         What the judges read above the pictures.
     width_px
@@ -94,7 +99,8 @@ def export(
     with progress() as show:
         result = export_jury(
             [solved_seat(path) for path in scenes], out, textures=texture, rigs=rig, camera=view,
-            width=width_px, judges=judges, seed=seed, title=title, ties=ties, progress=show,
+            width=width_px, judges=judges, seed=seed, questions=ask, title=title, ties=ties,
+            progress=show,
         )  # fmt: skip
     say(*result.notices)
     say(f"page for the judges: {result.page}", f"key, not for them: {result.key}")

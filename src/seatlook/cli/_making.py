@@ -77,7 +77,8 @@ def hooks(
             file=result, hint="solve it again",
         )  # fmt: skip
     units = {"at": ("at_mm", 1e3), "gap": ("gap_mm", 1e3), "pull": ("pull_n", 1.0)}
-    units |= {"limit": ("limit_n", 1.0), **{k: (f"{k}_mm", 1e3) for k in "xyz"}}
+    units |= {"per_length": ("pull_n_per_mm", 1e-3), "limit": ("limit_n", 1.0)}
+    units |= {k: (f"{k}_mm", 1e3) for k in "xyz"}
     names = [f.name for f in fields(RingPull)]
     heads = [units.get(name, (name, 1.0))[0] for name in names]
     rows = [

@@ -5,13 +5,16 @@ from __future__ import annotations
 import json as json_module
 import os
 import sys
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from threading import Event, Thread
 from typing import Annotated, Any, Protocol
 
 from cyclopts import Parameter
 
+EVERY = 60.0  # [s] between two lines of a log
 Json = Annotated[bool, Parameter(name="--json", negative=(), help="Print JSON, not a table.")]
 
 
@@ -104,7 +107,48 @@ def say(*lines: str) -> None:
 
 @contextmanager
 def progress() -> Iterator[Say]:
-    """Show a bar with the time left on stderr; nothing where nobody watches or with ``--quiet``."""
+    """Say on stderr how far the work is: a bar to who watches, a line a minute to files and pipes.
+
+    Nothing with ``--quiet``.
+    """
+    if manner.quiet:
+        yield _unsaid
+        return
+    with _bar() if sys.stderr and sys.stderr.isatty() else _lines() as show:
+        yield show
+
+
+def _unsaid(name: str, /, **figures: float | str) -> None:
+    """Say nothing."""
+
+
+@contextmanager
+def _lines() -> Iterator[Say]:
+    """Write where the work is once a minute, however long one step takes."""
+    begun, last, over = time.monotonic(), _Step("start", "", 0.0, None), Event()
+
+    def show(name: str, /, **figures: float | str) -> None:
+        nonlocal last
+        last = _Step.of(name, figures)
+
+    def write_on() -> None:
+        while not over.wait(EVERY):
+            passed = time.monotonic() - begun
+            say(f"{passed / 60:.0f} min: {last.sentence}")
+
+    # A daemon: a command that ends by an error does not wait for it.
+    writer = Thread(target=write_on, daemon=True)
+    writer.start()
+    try:
+        yield show
+    finally:
+        over.set()
+        writer.join()
+
+
+@contextmanager
+def _bar() -> Iterator[Say]:
+    """Show a bar with the time left."""
     from rich.console import Console
     from rich.progress import (
         BarColumn,
@@ -114,7 +158,6 @@ def progress() -> Iterator[Say]:
         TimeRemainingColumn,
     )
 
-    console = Console(stderr=True)
     with Progress(
         TextColumn("{task.description}"),
         BarColumn(bar_width=24),
@@ -122,24 +165,47 @@ def progress() -> Iterator[Say]:
         TextColumn("left"),
         TimeRemainingColumn(),
         TextColumn("{task.fields[figures]}"),
-        console=console,
-        disable=manner.quiet or not console.is_terminal,
+        console=Console(stderr=True),
         transient=True,
     ) as bar:
         task = bar.add_task("", total=None, figures="")
 
         def show(name: str, /, **figures: float | str) -> None:
-            words = [name, *(v for v in figures.values() if isinstance(v, str))]
-            numbers = {k: v for k, v in figures.items() if not isinstance(v, str)}
+            step = _Step.of(name, figures)
             bar.update(
                 task,
-                description=" ".join(words),
-                completed=numbers.pop("step", 0),
-                total=numbers.pop("steps", None),
-                figures="  ".join(f"{k} {v:.2g}" for k, v in numbers.items()),
+                description=step.name,
+                completed=step.done,
+                total=step.steps,
+                figures=step.figures,
             )
 
         yield show
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """What the work is at: its name, further figures as text, and how much of it is done."""
+
+    name: str
+    figures: str
+    done: float
+    steps: float | None
+
+    @staticmethod
+    def of(name: str, figures: Mapping[str, float | str]) -> _Step:
+        words = [name, *(v for v in figures.values() if isinstance(v, str))]
+        numbers = {k: v for k, v in figures.items() if not isinstance(v, str)}
+        done, steps = numbers.pop("step", 0), numbers.pop("steps", None)
+        return _Step(
+            " ".join(words), "  ".join(f"{k} {v:.2g}" for k, v in numbers.items()), done, steps
+        )
+
+    @property
+    def sentence(self) -> str:
+        """The same for a reader of a log."""
+        of = "" if self.steps is None else f"{self.done:g} of {self.steps:g} done"
+        return ", ".join(filter(None, (self.name, of, self.figures)))
 
 
 def _text(cell: Any) -> str:

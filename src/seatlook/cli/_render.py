@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from seatlook.cli._options import Names, Out, ResultFile, SceneFile, solved_seat
 from seatlook.cli._output import progress
+from seatlook.errors import InputError
+
+if TYPE_CHECKING:
+    from seatlook.model import Rig
 
 
 def render(
@@ -22,7 +27,10 @@ def render(
     maps: Annotated[bool, Parameter(help="Draw the wrinkle maps as well.")] = True,
     quality: str = "standard",
     tone: Literal["clamp", "neutral"] = "clamp",
+    white: Literal["exposure", "card"] = "exposure",
+    adaptation: float = 1.0,
     radiance: Literal["npy", "exr"] | None = None,
+    panorama_azimuth_deg: float | None = None,
 ) -> None:
     """Draw a result under the lights of a scene; nothing is solved.
 
@@ -42,8 +50,16 @@ def render(
         draft, standard or high, or a tier from T0 to T4.
     tone
         How light above white is shown: cut off, or rolled off (Khronos neutral).
+    white
+        What is shown as white: what the exposure says, or a white card that faces the light. With
+        "card" a facing surface shows the colour that was typed.
+    adaptation
+        How far the eye has adapted to the colour of the light: 1 shows a white card white, 0 shows
+        it in the colour of the lamp.
     radiance
         Save what is seen, in cd/m2, beside each picture; exr needs the extra "exr".
+    panorama_azimuth_deg
+        Turn the sky pictures of the rigs by so much more, counter-clockwise seen from above.
     """
     from seatlook.chain.draw import Canvas, Exposures, draw_maps, draw_pictures
     from seatlook.chain.files import picture_paths
@@ -53,11 +69,30 @@ def render(
     offscreen_backend()
     seat = solved_seat(scene, result)
     part, solution = seat.narrowed(texture, rig), seat.solution
+    if panorama_azimuth_deg is not None:
+        part = replace(part, rigs=_turned(part.rigs, panorama_azimuth_deg))
     canvas = Canvas(
         solution=solution, camera=seat.camera(view), out=out, run=solution.cover.scene_digest
     )
-    exposures = Exposures(quality=quality, tone=tone, radiance=radiance)
+    if not 0.0 <= adaptation <= 1.0:
+        raise InputError.single("--adaptation", got=adaptation, expected="0 to 1")
+    exposures = Exposures(
+        quality=quality, tone=tone, white=white, adaptation=adaptation, radiance=radiance
+    )
     with run_folder(out), progress() as show:
         draw_pictures(part, canvas, show, exposures=exposures, paths=picture_paths(seat.scene))
         if maps:
             draw_maps(seat.assessment, canvas, show)
+
+
+def _turned(rigs: tuple[Rig, ...], azimuth_deg: float) -> tuple[Rig, ...]:
+    """Rigs whose panoramas are turned."""
+    from seatlook.model.light.lamps import turned
+
+    name = "--panorama-azimuth-deg"
+    if not -360 <= azimuth_deg <= 360:
+        raise InputError.single(name, got=azimuth_deg, expected="-360 to 360")
+    if all(rig.panorama is None for rig in rigs):
+        names = ", ".join(rig.name for rig in rigs)
+        raise InputError.single(name, got=f"no panorama in {names}", expected="a rig with one")
+    return tuple(turned(rig, azimuth_deg) for rig in rigs)

@@ -195,9 +195,10 @@ def _draw(
 
 def _print_states(figures: Sequence[Mapping[str, Any]]) -> None:
     """Print one row per state, and one per part where there are several."""
-    heads = ("time", "c", "c_min", "c_max", *_SHOWN, "h_mm", "source")
+    curvatures = ("c", "c_min", "c_max")
+    heads = ("time", *curvatures, *_SHOWN, "h_mm", "source")
     table(
-        ("state", *heads),
+        ("state", *(f"{head}_per_mm" if head in curvatures else head for head in heads)),
         [(k, *(row[h] for h in heads)) for k, row in enumerate(figures)],
         json=False,
     )

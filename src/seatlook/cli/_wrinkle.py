@@ -178,9 +178,10 @@ def _assessed(
 def _print(
     file: Path, assessment: Assessment, compared: list[dict[str, str | float]], *, json: bool
 ) -> None:
-    from seatlook.chain.files import wrinkle_row
+    from seatlook.chain.files import advice_rows, stretch_rows, wrinkle_rows
 
-    worst = [wrinkle_row(rank, w) for rank, w in enumerate(assessment.wrinkles, 1)]
+    worst, seams = wrinkle_rows(assessment), stretch_rows(assessment)
+    advice = advice_rows(assessment)
     if json:
         data: dict[str, Any] = {
             "file": str(file),
@@ -190,11 +191,13 @@ def _print(
             "c_threshold_per_mm": [_MM * v for v in assessment.criteria.thresholds],
             "zones": [row.values() for row in assessment.zones],
             "worst": worst,
+            "seam_excess": seams,
+            "advice": advice,
             "distortion": [asdict(row) for row in assessment.distortion_rows],
             "difference": compared,
         }
         show_json(data)
         return
     print_zones(assessment.zones, assessment.resolution, json=False)
-    print_rows(worst)
-    print_rows(compared)
+    for rows in (worst, seams, advice, compared):
+        print_rows(rows)

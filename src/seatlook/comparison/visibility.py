@@ -66,10 +66,12 @@ def score_variants(comparison: Comparison, progress: Progress = silent) -> Varia
     """
     vwi: dict[tuple[str, str, str], float] = {}
     refused: dict[str, str] = {}
+    # One limit for all: a finer mesh would be scored for waves that the others cannot have.
+    coarsest = max(v.solution.cover.element_size for v in comparison.variants.values())
     for name, variant in comparison.variants.items():
         progress("score", variant=name)
         try:
-            grid = _grid(comparison, variant)
+            grid = _grid(comparison, variant, coarsest)
         except InputError as error:
             refused[name] = str(error)
             continue
@@ -81,9 +83,9 @@ def score_variants(comparison: Comparison, progress: Progress = silent) -> Varia
     )
 
 
-def _grid(comparison: Comparison, variant: Case) -> Grid:
+def _grid(comparison: Comparison, variant: Case, element_size: float) -> Grid:
     """Score one variant; what it takes to look at it, up to 2 GB, is given back before the next."""
     scene = comparison.first.scene
-    view = View(variant.solution, comparison.camera)
+    view = View(variant.solution, comparison.camera, element_size=element_size)
     null_gate(view, scene)
     return score_grid(view, scene.textures, scene.rigs, indices=variant.assessment.indices)

@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
+from typing import TypeVar
 
 from seatlook import files
 from seatlook._version import __version__
 from seatlook.chain.draw import map_ends
+from seatlook.comparison.changes import (
+    Change,
+    better,
+    difference_tables,
+    sight_changes,
+    worse,
+    zone_changes,
+)
 from seatlook.comparison.compare import Comparison
 from seatlook.comparison.visibility import VariantScores
 from seatlook.files import file_names
+from seatlook.model import Scene
 from seatlook.model.progress import Progress, silent
 from seatlook.model.table import Table, number
 from seatlook.report.page.data import PageData
 from seatlook.report.page.types import Check, MapView, ScoreSection, Spot, WrinkleSection
 from seatlook.report.page.write import write_page
+from seatlook.report.sections.in_short import WORDS
+from seatlook.report.sections.inputs import different_inputs, in_words
 from seatlook.report.sections.parameters import parameter_tables, parameter_toml
 from seatlook.report.sections.rigs import rig_head
+from seatlook.report.sections.words import counted, listed
 from seatlook.report.sections.wrinkles import section_of
 from seatlook.wrinkle import INDICES
 
@@ -30,7 +43,8 @@ _TABLES = {
     "W_compression mean": "w_compression_mean",
 }
 
-_VISIBILITY = "Visibility of wrinkles (VWI, in thresholds of a model observer)"
+Changes = tuple[Change, ...]
+T = TypeVar("T")
 _WORST = 3  # wrinkles of each variant
 
 
@@ -55,6 +69,8 @@ def write_comparison(
     """
     pictures = _pictures(comparison, folder, progress)
     wrinkles = _wrinkles(comparison)
+    inputs = different_inputs({n: case.scene for n, case in comparison.variants.items()})
+    zones, sights = zone_changes(comparison), sight_changes(scores) if scores else ()
     data = PageData(
         title=" against ".join(comparison.variants),
         camera=comparison.camera.name,
@@ -65,33 +81,47 @@ def write_comparison(
         pictures=MappingProxyType(pictures),
         maps=tuple(_maps(comparison, folder)),
         zones=_zones(comparison, "w2_p95"),
-        differences=_differences(comparison, scores),
+        differences=_differences(comparison, inputs, zones, sights),
         baseline=comparison.baseline,
         wrinkles=wrinkles,
         spots=wrinkles.spots,
-        summary=tuple(_summary(comparison, scores)),
+        summary=tuple(_summary(comparison, inputs, zones, sights)),
         facing=_facing(comparison, scores),
         score=None if scores is None else _marks(scores),
-        toml=MappingProxyType(
-            {
-                f"{name}, {owner}": text
-                for name, variant in comparison.variants.items()
-                for owner, text in parameter_toml(variant.scene).items()
-            }
-        ),
-        parameters=MappingProxyType(
-            {
-                f"{name}, {owner}": table
-                for name, variant in comparison.variants.items()
-                for owner, table in parameter_tables(variant.scene).items()
-            }
-        ),
+        toml=_each(comparison, parameter_toml),
+        parameters=_each(comparison, parameter_tables),
         provenance=MappingProxyType(dict(_provenance(comparison))),
+        verdict=listed(
+            f"{WORDS[v.resolution.status]} ({n})" for n, v in comparison.variants.items()
+        ),
+        again=_again(comparison, folder),
         status=", ".join(f"{n} {v.resolution.status}" for n, v in comparison.variants.items()),
         checks=tuple(_checks(comparison)),
         warnings=tuple(_warnings(comparison, scores)),
     )
     return write_page(data, folder, single_file=single_file)
+
+
+def _each(
+    comparison: Comparison, of: Callable[[Scene], Mapping[str, T]]
+) -> MappingProxyType[str, T]:
+    """Parts of every variant's scene by the names of both."""
+    return MappingProxyType(
+        {
+            f"{name}, {owner}": part
+            for name, variant in comparison.variants.items()
+            for owner, part in of(variant.scene).items()
+        }
+    )
+
+
+def _again(comparison: Comparison, folder: Path) -> str:
+    """The command that makes the page as one file; without files of all scenes there is none."""
+    paths = [case.scene.path for case in comparison.variants.values()]
+    if not all(paths):
+        return ""
+    names = " ".join(f"{path.parent.name}/{path.name}" for path in paths if path)
+    return f"seatlook compare {names} --out {folder.resolve().name} --single-file"
 
 
 def _row(variant: str, texture: str) -> str:
@@ -118,29 +148,48 @@ def _pictures(
     return pictures
 
 
-def _summary(comparison: Comparison, scores: VariantScores | None) -> Iterator[str]:
-    """How much each variant wrinkles, and where the others differ most from the first."""
-    shares = {n: case.assessment.share_above_one for n, case in comparison.variants.items()}
-    text = "; ".join(f"{name}: {number(100 * share)} %" for name, share in shares.items())
-    yield f"Share of the cover with W2 above 1: {text}."
-    first, *others = comparison.variants
-    zone, *row = comparison.table("w2_mean").rows[0]
-    means = dict(zip(comparison.variants, row, strict=False))
-    away = dict(zip(others, row[len(means) :], strict=True))
-    known = {name: float(v) for name, v in away.items() if v is not None}
-    if known:
-        most = max(known, key=lambda name: abs(known[name]))
+def _summary(
+    comparison: Comparison, inputs: Table, zones: Changes, sights: Changes
+) -> Iterator[str]:
+    """What changed in the inputs, then where it got worse, then better, each with its figures."""
+    if len(comparison.variants) == 2:
+        yield in_words(inputs)
+    else:
+        yield f"{len(inputs.rows)} inputs differ; the first table below lists them."
+    yield _worst(comparison, zones, "wrinkles more", "mean W2")
+    yield _best(zones, "wrinkles less", "mean W2")
+    if sights:
+        yield _worst(comparison, sights, "shows more", "VWI")
+        yield _best(sights, "shows less", "VWI")
+    if any(change.beyond is None for change in zones):
         yield (
-            f"They differ most in {zone}: mean of W2 {number(means[most])} in {most}, "
-            f"{number(means[first])} in {first}."
+            "Whether zones differ beyond mesh error and scatter is not known; "
+            "--tolerance 0.1 solves each variant to a known error."
         )
-    if scores and scores.widest:
-        name, texture, rig = scores.widest
-        yield (
-            f"Visibility differs most for {texture} under {rig}: VWI "
-            f"{number(scores.vwi[name, texture, rig])} in {name}, "
-            f"{number(scores.vwi[first, texture, rig])} in {first}."
-        )
+
+
+def _worst(comparison: Comparison, changes: Changes, what: str, unit: str) -> str:
+    """The first place that got worse, how much, and how many more there are."""
+    bad = worse(changes)
+    if not bad:
+        return f"Nowhere it {what}."
+    first = bad[0]
+    more = f"; {len(bad) - 1} more below" if len(bad) > 1 else ""
+    return (
+        f"{first.variant} {what} than {comparison.baseline}, most in {first.place}: {unit} "
+        f"{number(first.before)} → {number(first.after)}{more}."
+    )
+
+
+def _best(changes: Changes, what: str, unit: str) -> str:
+    good = better(changes)
+    if not good:
+        return f"Nowhere it {what}."
+    first = good[0]
+    return (
+        f"It {what} in {counted(len(good), 'place')}, most in {first.place}: {unit} "
+        f"{number(first.before)} → {number(first.after)}."
+    )
 
 
 def _facing(
@@ -215,18 +264,15 @@ def _maps(comparison: Comparison, folder: Path) -> Iterator[MapView]:
 
 
 def _differences(
-    comparison: Comparison, scores: VariantScores | None
+    comparison: Comparison, inputs: Table, zones: Changes, sights: Changes
 ) -> MappingProxyType[str, Table]:
-    """Parameters that are not the same in all scenes, visibility, then zones, each sorted."""
+    """What goes in, then worse and better, in shape and in appearance, then whole tables."""
+    tables = {"What changed": inputs} | difference_tables(comparison, zones, sights)
+    whole = {name: _zones(comparison, measure) for name, measure in _TABLES.items()}
     return MappingProxyType(
-        {
-            "Parameters that differ": _different_parameters(comparison),
-            **(
-                {_VISIBILITY: _against(comparison, scores.table())} if scores and scores.vwi else {}
-            ),
-            "Do the means of W2 differ": _named(comparison, comparison.judged(), "w2_mean"),
-            **{name: _zones(comparison, measure) for name, measure in _TABLES.items()},
-        }
+        {name: table for name, table in tables.items() if table.rows}
+        | {"Seeds that tell zones apart": _named(comparison, comparison.judged(), "w2_mean")}
+        | whole
     )
 
 
@@ -246,26 +292,6 @@ def _against(comparison: Comparison, table: Table) -> Table:
     minus = f" - {comparison.baseline}"
     heads = (f"change: {h.removesuffix(minus)}" if h.endswith(minus) else h for h in table.heads)
     return replace(table, heads=tuple(heads))
-
-
-def _different_parameters(comparison: Comparison) -> Table:
-    """Keys with another value in one of the scenes; a pattern differs by its seams' ease."""
-    values_of: dict[str, dict[str, str]] = {}
-    for name, variant in comparison.variants.items():
-        for owner, table in parameter_tables(variant.scene).items():
-            for key, value, *_ in table.rows:
-                values_of.setdefault(f"{owner}: {key}", {})[name] = str(value)
-        for seam in variant.scene.pattern.seams:
-            lengths = [variant.scene.pattern.edge_length(e) for e in (seam.a, *seam.b)]
-            text = " + ".join(f"{1e3 * length:.1f}" for length in lengths)
-            values_of.setdefault(f"seam {seam.name}: lengths_mm", {})[name] = text
-    names = tuple(comparison.variants)
-    rows = tuple(
-        (key, *(values.get(name) for name in names))
-        for key, values in values_of.items()
-        if len({values.get(name) for name in names}) > 1
-    )
-    return Table(heads=("key", *names), rows=rows or (("none", *(None for _ in names)),))
 
 
 def _checks(comparison: Comparison) -> Iterator[Check]:

@@ -18,14 +18,15 @@ from seatlook.model.table import Table, number
 from seatlook.model.zones import FREE_EDGE
 from seatlook.pbr import offscreen_backend
 from seatlook.report.page.data import PageData
-from seatlook.report.page.types import Check, ScoreSection
+from seatlook.report.page.types import Check, CloseUp, ScoreSection
 from seatlook.report.page.write import write_page
 from seatlook.report.sections.design import design_section, distance_table
-from seatlook.report.sections.in_short import missed, seen, wrinkled
+from seatlook.report.sections.in_short import WORDS, first_lines, place_words
 from seatlook.report.sections.making import making_section
 from seatlook.report.sections.maps import map_view
 from seatlook.report.sections.parameters import parameter_tables, parameter_toml
 from seatlook.report.sections.rigs import rig_head
+from seatlook.report.sections.words import light_words, look_words
 from seatlook.report.sections.wrinkles import wrinkle_section
 from seatlook.results.conditions import conditions
 from seatlook.wrinkle import INDICES
@@ -44,13 +45,27 @@ def write_report(
 ) -> Path:
     """Write the gallery page of an evaluation into its folder and return its path."""
     data = page_data(evaluation)
-    summary = (
-        *wrinkled(evaluation.case.assessment),
-        *seen(score.cells if score else {}),
-        *missed((*_limits(evaluation), *(score.checks if score else ()))),
+    checks = (*_limits(evaluation), *(score.checks if score else ()))
+    data = replace(
+        data,
+        score=score,
+        summary=first_lines(evaluation.case.assessment, score, checks),
+        close_up=_close_up(evaluation, score),
     )
-    data = replace(data, score=score, summary=summary)
     return write_page(data, evaluation.folder, single_file=single_file)
+
+
+def _close_up(evaluation: Evaluation, score: ScoreSection | None) -> CloseUp:
+    """The place that shows most, in the look and light in which it does; else a whole picture."""
+    cells = score.cells if score else {}
+    texture, rig = max(cells or evaluation.pictures, key=lambda cell: cells.get(cell, 0.0))
+    at, where = None, "the seat"
+    place = next((p for p in (score and score.places) or () if p.shows), None)
+    if place:
+        texture, rig, at = place.texture, place.rig, (place.x, place.y)
+        where = place_words(evaluation.case.assessment, place)
+    caption = f"{look_words(texture)} under {light_words(rig)}: {where}"
+    return CloseUp(image=evaluation.pictures[texture, rig], caption=caption, at=at)
 
 
 def page_data(evaluation: Evaluation) -> PageData:
@@ -72,6 +87,8 @@ def page_data(evaluation: Evaluation) -> PageData:
         spots=wrinkles.spots,
         provenance=MappingProxyType(dict(_provenance(evaluation))),
         status=evaluation.case.resolution.status,
+        verdict=WORDS[evaluation.case.resolution.status],
+        again=_again(scene, evaluation.folder),
         seams=seam_table(scene),
         shape=_shape(evaluation),
         wrinkles=wrinkles,
@@ -89,6 +106,14 @@ def page_data(evaluation: Evaluation) -> PageData:
     )
 
 
+def _again(scene: Scene, folder: Path) -> str:
+    """The command that makes the page as one file; without a file of the scene there is none."""
+    if scene.path is None:
+        return ""
+    out = folder.resolve().name
+    return f"seatlook evaluate {scene.path.name} --out {out} --resume --single-file"
+
+
 def _zones(evaluation: Evaluation) -> Table:
     """Zones, worst first, without the free edges, which are clamped or trimmed."""
     columns = [column for index in INDICES.values() for column in index.columns]
@@ -102,6 +127,7 @@ def _zones(evaluation: Evaluation) -> Table:
             "± seeds",
             "resolved",
             "h [mm]",
+            "W2 by",
         ),
         rows=tuple(
             (
@@ -113,6 +139,7 @@ def _zones(evaluation: Evaluation) -> Table:
                 row.w2_scatter,
                 "yes" if row.resolved else "no",
                 1e3 * row.element_size,
+                row.criterion,
             )
             for row in sorted(evaluation.case.assessment.zones, key=lambda row: -row["w2_p95"])
             if row.zone != FREE_EDGE

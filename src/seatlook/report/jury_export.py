@@ -9,7 +9,7 @@ from typing import TypedDict, Unpack
 
 from seatlook.chain.case import Case
 from seatlook.comparison.compare import Variant, case_of
-from seatlook.jury.questionnaire import Questionnaire, trials
+from seatlook.jury.questionnaire import SEEN, WRINKLES, Questionnaire, trials
 from seatlook.jury.stimuli import Stimuli, draw_stimuli, jury_view
 from seatlook.model import Camera, Scene
 from seatlook.model.progress import Progress, silent
@@ -23,7 +23,9 @@ class JuryChoices(TypedDict, total=False):
     ``textures``, ``rigs``: names of the scenes' own, all of them if empty; ``camera``: name of a
     camera of the scenes, the first if None; ``width`` [px]: pictures are cut to it at their own
     scale; ``judges``: sessions to prepare; ``seed``: of code names, order and sides; ``title``:
-    what the judges read above the pictures; ``ties``: allow "equal" as an answer.
+    what the judges read above the pictures; ``questions``: "seen" (in which one can you see a
+    wrinkle more easily), "wrinkles" (which one looks more wrinkled), "preference" (which one would
+    you rather have), the first two if not given; ``ties``: allow "equal" as an answer.
     """
 
     textures: Sequence[str]
@@ -33,6 +35,7 @@ class JuryChoices(TypedDict, total=False):
     judges: int
     seed: int
     title: str
+    questions: Sequence[str]
     ties: bool
     progress: Progress
 
@@ -92,6 +95,7 @@ def export_jury(
         title=choices.get("title", "Seat covers"),
         judges=choices.get("judges", 20),
         seed=seed,
+        questions=tuple(choices.get("questions") or (SEEN, WRINKLES)),
         ties=choices.get("ties", False),
     )
     return JuryExport(

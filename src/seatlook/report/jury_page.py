@@ -14,6 +14,8 @@ from seatlook.errors import InputError
 from seatlook.files import read_text, reader
 from seatlook.jury.plan import SECONDS_PER_TRIAL
 from seatlook.jury.questionnaire import (
+    SEEN,
+    WRINKLES,
     Questionnaire,
     questionnaire_document,
     read_questionnaire,
@@ -28,7 +30,14 @@ _TEMPLATES = Path(__file__).parent / "templates"
 
 
 def write_jury(
-    stimuli: Stimuli, folder: Path, *, title: str, judges: int, seed: int, ties: bool = False
+    stimuli: Stimuli,
+    folder: Path,
+    *,
+    title: str,
+    judges: int,
+    seed: int,
+    questions: tuple[str, ...] = (SEEN, WRINKLES),
+    ties: bool = False,
 ) -> Questionnaire:
     """Write the folder "page" for the judges, and beside it the key, which is not for them.
 
@@ -37,6 +46,7 @@ def write_jury(
     title : what the judges read above the pictures
     judges : sessions to choose from
     seed : of order and sides
+    questions : of ``seatlook.jury.questionnaire.QUESTIONS``, each over all pairs
     ties : whether "equal" may be answered
 
     Raises
@@ -44,7 +54,7 @@ def write_jury(
     InputError
         See :class:`Questionnaire`; no judge.
     """
-    questionnaire = stimuli.questionnaire(title=title, ties=ties)
+    questionnaire = stimuli.questionnaire(title=title, questions=questions, ties=ties)
     document = questionnaire_document(questionnaire, judges=judges, seed=seed)
     for one in stimuli.shown:
         one.picture.save(folder / PAGE / one.path)

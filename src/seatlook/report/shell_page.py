@@ -11,7 +11,9 @@ from seatlook._version import __version__
 from seatlook.chain.shell_maps import PICTURE, DrawnState
 from seatlook.model.table import Table
 from seatlook.report.page.data import PageData
+from seatlook.report.page.types import CloseUp, WrinkleSection
 from seatlook.report.page.write import write_page
+from seatlook.report.sections.in_short import state_lines
 from seatlook.report.sections.maps import map_view
 from seatlook.report.sections.rigs import rig_head
 from seatlook.report.sections.wrinkles import section_of
@@ -52,8 +54,18 @@ def write_shell_page(
     rig = rig_head(drawn.rig)
     heads = ("key", "value", "source")
     parameters = Table(heads=heads, rows=tuple((k, v, None) for k, v in asked.items()))
+    wrinkles = section_of(
+        drawn.assessment,
+        drawn.camera,
+        maps=tuple(map(map_view, drawn.distortion)),
+        files=drawn.files,
+        distortion=not drawn.cover.projected,
+    )
     data = PageData(
         title=title,
+        summary=state_lines(drawn.assessment, asked, str(figures["source"])),
+        close_up=_close_up(wrinkles),
+        spots=wrinkles.spots,
         camera=drawn.camera.name,
         size=drawn.camera.size,
         pixels_per_degree=drawn.camera.pixels_per_degree,
@@ -62,29 +74,35 @@ def write_shell_page(
         pictures=MappingProxyType({(look, rig.name): PICTURE}),
         maps=tuple(map(map_view, drawn.maps)),
         zones=_parts(figures),
-        wrinkles=section_of(
-            drawn.assessment,
-            drawn.camera,
-            maps=tuple(map(map_view, drawn.distortion)),
-            files=drawn.files,
-            distortion=not drawn.cover.projected,
-        ),
+        wrinkles=wrinkles,
         parameters=MappingProxyType({"evaluation": parameters}),
-        provenance=MappingProxyType(
-            {
-                "seatlook": __version__,
-                "time": f"{figures['time']:g}",
-                "curvature from": figures["source"],
-                "shells turned over": str(figures["shells_turned"]),
-                "shells deleted": str(figures["shells_deleted"]),
-                "tier of the picture": drawn.quality,
-            }
-        ),
+        provenance=_provenance(drawn, figures),
         status="the shape is that of another calculation",
+        verdict="another program",
         warnings=(*notes, *_projected(drawn)),
         files=drawn.files,
     )
     return write_page(data, drawn.folder)
+
+
+def _provenance(drawn: DrawnState, figures: dict[str, Any]) -> MappingProxyType[str, str]:
+    return MappingProxyType(
+        {
+            "seatlook": __version__,
+            "time": f"{figures['time']:g}",
+            "curvature from": figures["source"],
+            "shells turned over": str(figures["shells_turned"]),
+            "shells deleted": str(figures["shells_deleted"]),
+            "tier of the picture": drawn.quality,
+        }
+    )
+
+
+def _close_up(wrinkles: WrinkleSection) -> CloseUp:
+    """The worst wrinkle in view, or the whole picture."""
+    for spot in wrinkles.spots[:1]:
+        return CloseUp(image=PICTURE, caption=spot.label, at=(spot.x, spot.y))
+    return CloseUp(image=PICTURE, caption="the shells")
 
 
 def _parts(figures: dict[str, Any]) -> Table:

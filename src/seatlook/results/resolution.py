@@ -23,6 +23,7 @@ PER_WAVE = 8.0  # elements on the shortest wrinkle of a fabric on its foam
 SHARPEST = 45.0  # deg, of the fold between neighbours: a radius of 1.3 elements
 # Recovered curvature of a wave: relative error 3.9 (h / lambda)^2, measured at 8 and 16 elements.
 CURVATURE_ERROR = 3.9
+_WORK = 2.6  # time to solve over element size, as a power: docs/charts/scaling.csv
 _MESHED = 0.02  # by which a mesh may miss the size it is asked for: sides hold whole elements
 
 
@@ -59,13 +60,15 @@ class Waves:
 
     @property
     def sentence(self) -> str:
-        """How many elements there are, how many there should be, and of what size."""
+        """What the mesh cannot show, which mesh can, and how much longer that takes."""
         where = "" if len(self.panels) > 3 else f" in {', '.join(self.panels)}"
         h, wave = number(1e3 * self.element_size), number(1e3 * self.wavelength)
+        finer = largest_size(self.wavelength)
+        longer = max((1e3 * self.element_size / finer) ** _WORK, 1.0)
         return (
-            f"{self.material}{where}: elements of {h} mm are larger than an eighth of the "
-            f"wavelength of its wrinkles, {wave} mm: {self.per_wave:.1f} to a wave; "
-            f"{largest_size(self.wavelength):g} mm resolve it"
+            f"the mesh is too coarse to show the wrinkles of {self.material}{where}: elements of "
+            f"{h} mm, {self.per_wave:.1f} to a wave of {wave} mm, and 8 show it; "
+            f"--element-size-mm {finer:g} resolves them and takes about {longer:.2g} times as long"
         )
 
 

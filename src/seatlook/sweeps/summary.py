@@ -92,7 +92,7 @@ def at_rest(row: dict[str, Any]) -> bool:
 def overall(zones: Sequence[dict[str, Any]]) -> dict[str, float]:
     """Means over the zones, weighted by area, without free edges, which are clamped or trimmed."""
     inner = [z for z in zones if z["zone"] != FREE_EDGE]
-    area = np.array([z["area"] for z in inner])
+    area = np.array([z["area_cm2"] for z in inner])
     figures = [name for name in figure_names() if name in inner[0]]
     return {m: float(area @ [z[m] for z in inner] / area.sum()) for m in figures}
 

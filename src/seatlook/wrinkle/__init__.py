@@ -1,5 +1,6 @@
 """How much a cover wrinkles, where and why."""
 
+from seatlook.wrinkle.advice import Advice, advice_on, advise
 from seatlook.wrinkle.distortion import (
     DISTORTIONS,
     Distortion,
@@ -37,6 +38,7 @@ from seatlook.wrinkle.recovery import (
     shape_curvature,
 )
 from seatlook.wrinkle.registry import INDICES, STATISTICS, Index, figure_names, register
+from seatlook.wrinkle.seam_excess import SeamStretch, seam_excess
 from seatlook.wrinkle.section import Section, section
 from seatlook.wrinkle.surface import Surface
 from seatlook.wrinkle.worst import Wrinkle, beside_sections, section_across, worst_wrinkles
@@ -50,13 +52,17 @@ __all__ = [
     "STATISTICS",
     "STRAIN_MEASURES",
     "TENSION_STATES",
+    "Advice",
     "Distortion",
     "DistortionRow",
     "Index",
+    "SeamStretch",
     "Section",
     "Surface",
     "Wrinkle",
     "ZoneRow",
+    "advice_on",
+    "advise",
     "beside_sections",
     "compression_wrinkle",
     "curvature_index",
@@ -72,6 +78,7 @@ __all__ = [
     "recovery_error",
     "register",
     "relative_curvature",
+    "seam_excess",
     "section",
     "section_across",
     "shape_curvature",

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import splu
 
 from seatlook.errors import InputError
 from seatlook.mesh import angles, boundary_sides, face_areas
-from seatlook.mesh.kinematics import deformation_gradient
+from seatlook.mesh.kinematics import deformation_gradient, principal_values
 from seatlook.model import Cover, FloatArray, IntArray
 from seatlook.wrinkle.jet import vertex_curvature
 
@@ -116,7 +116,7 @@ def low_passed(
     cover: Cover,
     positions: FloatArray,
     *,
-    wavelength: float = DESIGN_WAVELENGTH,
+    wavelength: float | FloatArray = DESIGN_WAVELENGTH,
     within: npt.NDArray[np.bool_] | None = None,
 ) -> FloatArray:
     """Smooth shape (n, 3) [m]: waves shorter than ``wavelength`` removed, sewn lines held.
@@ -127,6 +127,8 @@ def low_passed(
 
     Parameters
     ----------
+    wavelength : [m], or (m, 2, 2) [m] in rest axes where it differs by place and direction: a wave
+        along an eigenvector goes where it is shorter than the eigenvalue
     within : (n,) bool    vertices to be moved, to save time on large covers; at one and a half
         wavelengths from those that are not, the shape is that of the whole to one part in 700
 
@@ -135,16 +137,21 @@ def low_passed(
     InputError
         A wavelength of 0 or less.
     """
-    if not wavelength > 0:
-        raise InputError.single("wavelength", got=wavelength, expected="above 0")
+    field = np.asarray(wavelength)
+    least = float(principal_values(field)[1].min() if field.ndim else field)
+    if not least > 0:
+        raise InputError.single("wavelength", got=f"{least:g}", expected="above 0")
     smooth, moved = np.array(positions), ~_held(cover)
     if within is not None:
         moved &= within
     if not moved.any():
         return smooth
-    node, faces = _two_rings(moved, cover.faces)
+    node, faces, near = _two_rings(moved, cover.faces)
     stiffness, mass = _laplacian(cover.rest[node], faces, len(node))
-    length4 = (wavelength / (2 * np.pi)) ** 4
+    length4 = float((1.0 if field.ndim else field / (2 * np.pi)) ** 4)
+    if field.ndim:
+        length = field[near] / (2 * np.pi)
+        stiffness = _diffusion(cover.rest[node], faces, length @ length, len(node))
     matrix = diags_array(mass) + length4 * stiffness @ diags_array(1.0 / mass) @ stiffness
     free = np.flatnonzero(moved[node])
     # Smoothing what lies beside a held point: its known part goes to the right-hand side.
@@ -156,8 +163,10 @@ def low_passed(
     return smooth
 
 
-def _two_rings(moved: npt.NDArray[np.bool_], faces: IntArray) -> tuple[IntArray, IntArray]:
-    """Vertices (k,) up to two rings around those moved, and their faces, numbered among them.
+def _two_rings(
+    moved: npt.NDArray[np.bool_], faces: IntArray
+) -> tuple[IntArray, IntArray, npt.NDArray[np.bool_]]:
+    """Vertices (k,) up to two rings around those moved; their faces, numbered among them; which.
 
     As far as the fourth-order operator looks.
     """
@@ -166,7 +175,7 @@ def _two_rings(moved: npt.NDArray[np.bool_], faces: IntArray) -> tuple[IntArray,
         touched = near[faces].any(axis=1)
         near[faces[touched]] = True
     number = np.cumsum(near) - 1
-    return np.flatnonzero(near), number[faces[touched]]
+    return np.flatnonzero(near), number[faces[touched]], np.asarray(touched)
 
 
 def shape_curvature(cover: Cover, positions: FloatArray) -> FloatArray:
@@ -199,3 +208,13 @@ def _laplacian(rest: FloatArray, faces: IntArray, n: int) -> tuple[csc_array, Fl
     area = 0.5 * np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
     mass = np.bincount(faces.ravel(), np.repeat(area / 3.0, 3), n)
     return csc_array(stiffness), np.where(mass > 0, mass, 1.0)
+
+
+def _diffusion(rest: FloatArray, faces: IntArray, tensor: FloatArray, n: int) -> csc_array:
+    """Stiffness (n, n) of the flat panels under a diffusion tensor (m, 2, 2), linear triangles."""
+    p = rest[faces]
+    inverse = np.linalg.inv(np.stack([p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]], axis=2))
+    slope = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
+    pair = slope @ tensor @ np.swapaxes(slope, 1, 2) * face_areas(rest, faces)[:, None, None]
+    index = np.repeat(faces, 3, axis=1).ravel(), np.tile(faces, (1, 3)).ravel()
+    return csc_array(coo_array((pair.ravel(), index), shape=(n, n)))

@@ -10,6 +10,7 @@ from seatlook.errors import InputError
 from seatlook.model import Cover, FloatArray, IntArray
 
 _STEP = 0.2  # of h between samples
+_TOGETHER = 16  # samples that are looked for among the same faces
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,6 +22,7 @@ class Section:
     along : (k,) float64 [m]     distance on the flat panel from the middle of the line
     height : (k,) float64 [m]    above the straight edge that rests on the profile, so <= 0
     points : (k, 3) float64 [m]  the same points in space
+    faces : (k,) int64           in which they lie
     intended : (k,) float64 [m]  height of the shape that was meant above the same edge, of either
         sign; None where it is not asked for
     """
@@ -28,6 +30,7 @@ class Section:
     along: FloatArray
     height: FloatArray
     points: FloatArray
+    faces: IntArray
     intended: FloatArray | None = None
 
     @property
@@ -70,7 +73,7 @@ def section(
     count = int(np.ceil(half_length / (_STEP * cover.element_size)))
     along = np.linspace(-half_length, half_length, 2 * count + 1)
     line = np.asarray(middle) + along[:, None] * np.asarray(direction) / length
-    face, weight = _located(cover, panel, line)
+    face, weight = located(cover, panel, line)
     if face[count] < 0:
         raise InputError.single(
             "section", got=f"middle {np.asarray(middle).tolist()}",
@@ -88,26 +91,36 @@ def section(
         along=along[inside],
         height=np.minimum(edge.height(points), 0.0),
         points=points,
+        faces=face[inside],
         intended=None if meant is None else edge.height(meant),
     )
 
 
-def _located(cover: Cover, panel: int, line: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Return the face (k,) of each point, -1 outside, and barycentric weights (k, 3)."""
-    low, high = line.min(axis=0), line.max(axis=0)
-    # One bit per side of the line's box: a face whose corners share one lies beyond that side.
-    beyond = np.concatenate([cover.rest < low, cover.rest > high], axis=1)
-    side = np.packbits(beyond, axis=1)[:, 0][cover.faces]
-    rows = np.flatnonzero((side[:, 0] & side[:, 1] & side[:, 2] == 0) & (cover.panel == panel))
-    p = cover.rest[cover.faces[rows]]
-    if not len(rows):
-        return np.full(len(line), -1), np.zeros((len(line), 3))
-    inverse = np.linalg.inv(np.stack([p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]], axis=2))
-    w = np.einsum("fij,kfj->kfi", inverse, line[:, None] - p[None, :, 0])
-    weight = np.concatenate([1.0 - w.sum(axis=2, keepdims=True), w], axis=2)
-    best = weight.min(axis=2).argmax(axis=1)
-    chosen = weight[np.arange(len(line)), best]
-    return np.where(chosen.min(axis=1) >= -1e-9, rows[best], -1), chosen
+def located(cover: Cover, panel: int, line: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Find points (k, 2) of a flat panel: their faces (k,), -1 outside, and weights (k, 3)."""
+    rows = _touching(cover, np.flatnonzero(cover.panel == panel), line)
+    face, weight = np.full(len(line), -1), np.zeros((len(line), 3))
+    for begin in range(0, len(line), _TOGETHER):
+        part = slice(begin, begin + _TOGETHER)
+        some = _touching(cover, rows, line[part])
+        if not len(some):
+            continue
+        p = cover.rest[cover.faces[some]]
+        inverse = np.linalg.inv(np.stack([p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]], axis=2))
+        w = np.einsum("fij,kfj->kfi", inverse, line[part, None] - p[None, :, 0])
+        shares = np.concatenate([1.0 - w.sum(axis=2, keepdims=True), w], axis=2)
+        best = shares.min(axis=2).argmax(axis=1)
+        chosen = shares[np.arange(len(best)), best]
+        face[part] = np.where(chosen.min(axis=1) >= -1e-9, some[best], -1)
+        weight[part] = chosen
+    return face, weight
+
+
+def _touching(cover: Cover, rows: IntArray, line: FloatArray) -> IntArray:
+    """Return the faces among some that reach into the box round a line (k, 2)."""
+    corner = cover.rest[cover.faces[rows]]
+    into = (corner.max(axis=1) >= line.min(axis=0)) & (corner.min(axis=1) <= line.max(axis=0))
+    return np.asarray(rows[into.all(axis=1)])
 
 
 def _normal(cover: Cover, positions: FloatArray, face: IntArray) -> FloatArray:

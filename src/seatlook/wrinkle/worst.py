@@ -1,25 +1,29 @@
-"""The worst wrinkles of a solved cover: where, how large, why, and what to do about them."""
+"""The worst wrinkles of a solved cover: where, how long, wide, deep, how much too long, why.
+
+Lengths and directions are measured on the flat panel, heights and distances in space.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from seatlook import mesh
-from seatlook.model import Cover, FloatArray, IntArray, Points, Solution, Stitching, WrinkleMap
+from seatlook.mesh import boundary_sides
+from seatlook.model import Cover, FloatArray, IntArray, Points, Solution, WrinkleMap
+from seatlook.wrinkle.profile import Profile, profile, section_reach
+from seatlook.wrinkle.region import extent, regions
 from seatlook.wrinkle.section import Section, section
 
-Cause = Literal["stretch", "compression"]
-NO_ADVICE = "none: the mesh does not resolve this wrinkle"
+Cause = Literal["stretch", "compression", "both"]
+Kind = Literal["wrinkle", "tie", "corner", "spot"]
+MIXED = (0.4, 0.6)  # shares of stretch between which neither cause is named alone
 _STATIONS = 7  # sections along a wrinkle, of which the deepest counts
-_LONGEST_SECTION = 0.03  # [m] to each side of a wrinkle
-_EQUAL = 0.005  # sewn lengths that differ by less count as equal
+_SMALLEST = 2.0  # elements; what is shorter is no wrinkle that the mesh can show
+_CORNER = np.radians(25.0)  # turn of an outline in a corner
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,21 +32,28 @@ class Wrinkle:
 
     Parameters
     ----------
+    kind : "wrinkle"; "tie" or "corner" if it is no farther from one than a quarter of the
+        wavelength, or shorter than two elements and at one; "spot" if it is as short elsewhere
     panel, zone : names
     rest : (2,) float64 [m]       deepest face, in ``Cover.rest`` coordinates
     uv : (2,) float64 [m]         the same in pattern coordinates
     position : (3,) float64 [m]   the same in space
-    along : (2,) float64          unit vector along the wrinkle, in rest coordinates
-    length, width : float [m]     of the rectangle with the region's second moments
-    depth : float [m]             below a straight edge laid across
+    along : (2,) float64          unit vector along the valley, in rest coordinates
+    length, width : float [m]     of the region along it, and its area over the length
+    depth : float [m]             below a straight edge laid across, from crest to crest
+    reach : float [m]             from the deepest place across to where the section ends
+    excess : float [m] >= 0       fabric too long across it: arc minus chord from crest to crest,
+        and what is compressed between
+    waves : float [m]             the part of it that is arc minus chord
+    scatter : float [m]           two standard errors of ``excess``, from sections along it
     w2_max, w2_area : float [1], [m2]    largest W2 and its integral, by which they are ranked
     stretch_share : float in [0, 1]      part of W2 that is W_stretch
+    cause : the larger part; "both" from 40 to 60 % of stretch
     near_kind, near, distance : nearest seam, hook or frame, its name, and how far [m]
-    ease : float                  excess of the longer sewn line over the other; 0 for no seam
     resolved : whether the mesh carries it
-    advice : one sentence; that there is none where it does not
     """
 
+    kind: Kind = "wrinkle"
     panel: str
     zone: str
     rest: FloatArray
@@ -52,6 +63,10 @@ class Wrinkle:
     length: float
     width: float
     depth: float
+    reach: float
+    excess: float
+    waves: float
+    scatter: float
     w2_max: float
     w2_area: float
     stretch_share: float
@@ -59,9 +74,12 @@ class Wrinkle:
     near_kind: str
     near: str
     distance: float
-    ease: float
-    advice: str
     resolved: bool = True
+
+    @property
+    def across(self) -> FloatArray:
+        """The unit vector (2,) across it, in rest coordinates."""
+        return np.array([-self.along[1], self.along[0]])
 
 
 def worst_wrinkles(
@@ -71,29 +89,37 @@ def worst_wrinkles(
     count: int = 5,
     level: float = 1.0,
     unresolved: npt.NDArray[np.bool_] | None = None,
+    wavelengths: Sequence[float | None] = (),
 ) -> tuple[Wrinkle, ...]:
     """Rank the connected regions of W2 above ``level`` by the integral of W2 over their area.
 
-    Regions end at panel edges. Fewer than ``count`` come back where there are fewer.
+    Wrinkles come first, then what lies at ties and corners. Regions end at panel edges. Fewer than
+    ``count`` come back where there are fewer.
 
     Parameters
     ----------
-    unresolved : (m,) bool   faces that the mesh does not carry; a wrinkle with one has no advice
+    unresolved : (m,) bool   faces that the mesh does not carry
+    wavelengths : float [m]  of the shortest wrinkle of each panel; where it is not known, that of
+        the wrinkle itself counts
     """
     cover = solution.cover
-    region = _regions(cover.faces, indices.w2 > level)
+    region = regions(cover.faces, indices.w2 > level)
     weight = indices.w2 * cover.rest_area
     numbered = region >= 0
     total = np.bincount(region[numbered], weight[numbered])
-    ranked = np.argsort(-total, kind="stable")[:count]
-    result = (_describe(solution, indices, np.flatnonzero(region == r)) for r in ranked)
-    if unresolved is None:
-        return tuple(result)
-    bad = set(region[unresolved].tolist())
-    return tuple(
-        replace(wrinkle, resolved=False, advice=NO_ADVICE) if r in bad else wrinkle
-        for r, wrinkle in zip(ranked.tolist(), result, strict=True)
-    )
+    bad = set() if unresolved is None else set(region[unresolved].tolist())
+    corners = _corners(cover)
+    waves = tuple(wavelengths) or (None,) * len(cover.panel_names)
+    wrinkles: list[Wrinkle] = []
+    others: list[Wrinkle] = []
+    for r in np.argsort(-total, kind="stable").tolist():
+        if len(wrinkles) == count:
+            break
+        faces = np.flatnonzero(region == r)
+        wrinkle = replace(_describe(solution, indices, faces, level), resolved=r not in bad)
+        wrinkle = replace(wrinkle, kind=_kind(solution, wrinkle, waves, corners))
+        (wrinkles if wrinkle.kind == "wrinkle" else others).append(wrinkle)
+    return (*wrinkles, *others)[:count]
 
 
 def section_across(
@@ -106,8 +132,8 @@ def section_across(
         solution.positions,
         panel=cover.panel_names.index(wrinkle.panel),
         middle=wrinkle.rest,
-        direction=_across(wrinkle),
-        half_length=_half_section(cover, wrinkle),
+        direction=wrinkle.across,
+        half_length=wrinkle.reach,
         design=design,
     )
 
@@ -122,57 +148,58 @@ def beside_sections(
     for wrinkle in wrinkles:
         rows = np.flatnonzero(panel == cover.panel_names.index(wrinkle.panel))
         off = cover.rest[rows] - wrinkle.rest
-        half = _half_section(cover, wrinkle)
-        along = np.maximum(np.abs(off @ _across(wrinkle)) - half, 0.0)
+        along = np.maximum(np.abs(off @ wrinkle.across) - wrinkle.reach, 0.0)
         near[rows[np.hypot(along, off @ wrinkle.along) < reach]] = True
     return near
 
 
-def _across(wrinkle: Wrinkle) -> FloatArray:
-    return np.array([-wrinkle.along[1], wrinkle.along[0]])
+def cause_of(stretch_share: float) -> Cause:
+    """Name the cause of a wrinkle by the part of its W2 that is W_stretch.
+
+    Examples
+    --------
+    >>> [cause_of(share) for share in (0.39, 0.4, 0.6, 0.61)]
+    ['compression', 'both', 'both', 'stretch']
+    """
+    low, high = MIXED
+    if stretch_share > high:
+        return "stretch"
+    return "compression" if stretch_share < low else "both"
 
 
-def _half_section(cover: Cover, wrinkle: Wrinkle) -> float:
-    return min(2.0 * wrinkle.width + 2.0 * cover.element_size, _LONGEST_SECTION)
-
-
-def _regions(faces: IntArray, marked: np.ndarray) -> IntArray:
-    """Number (m,) of the region of each marked face, joined over edges; -1 elsewhere."""
-    corners = faces[marked]
-    half = np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    key = half @ np.array([int(faces.max()) + 1, 1])
-    order = np.argsort(key, kind="stable")
-    same = np.flatnonzero(key[order][1:] == key[order][:-1])
-    a, b = order[same] // 3, order[same + 1] // 3
-    graph = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(len(corners), len(corners)))
-    region = np.full(len(faces), -1, dtype=np.int64)
-    region[marked] = connected_components(graph, directed=False)[1]
-    return region
-
-
-def _describe(solution: Solution, indices: WrinkleMap, faces: IntArray) -> Wrinkle:
+def _describe(solution: Solution, indices: WrinkleMap, faces: IntArray, level: float) -> Wrinkle:
     cover = solution.cover
     area, w2 = cover.rest_area[faces], indices.w2[faces]
-    along, length, width = _extent(cover.rest[cover.faces[faces]], area)
+    size = extent(solution, indices.w2, faces, level)
+    cuts = [
+        profile(solution, face, size.across) for face in _stations(cover, faces, w2, size.along)
+    ]
+    deepest = max(cuts, key=lambda cut: cut.depth)
+    corners = cover.faces[deepest.face]
+    position = solution.positions[corners].mean(axis=0)
+    kind, name, distance = _nearest(cover, solution.positions, position)
     w2_area = float(w2 @ area)
+    excess, waves, scatter = _excess(cuts)
     share = float(indices.w_stretch[faces] @ area) / w2_area
-    cause: Cause = "stretch" if share > 0.5 else "compression"
-    stations = []
-    for face in _stations(cover, faces, w2, along):
-        corners = cover.faces[face]
-        position = solution.positions[corners].mean(axis=0)
-        kind, name, distance = _nearest(cover, solution.positions, position)
-        ease = _ease(cover, name) if kind == "seam" else 0.0
-        wrinkle = Wrinkle(
-            panel=cover.panel_names[cover.panel[face]], zone=cover.zone_names[cover.zone[face]],
-            rest=cover.rest[corners].mean(axis=0), uv=cover.uv[corners].mean(axis=0),
-            position=position, along=along, length=length, width=width, depth=0.0,
-            w2_max=float(w2.max()), w2_area=w2_area, stretch_share=share, cause=cause,
-            near_kind=kind, near=name, distance=distance, ease=ease,
-            advice=_advice(cause, kind, name, ease),
-        )  # fmt: skip
-        stations.append(replace(wrinkle, depth=section_across(solution, wrinkle).depth))
-    return max(stations, key=lambda w: w.depth)
+    return Wrinkle(
+        panel=cover.panel_names[cover.panel[deepest.face]],
+        zone=cover.zone_names[cover.zone[deepest.face]],
+        rest=cover.rest[corners].mean(axis=0), uv=cover.uv[corners].mean(axis=0),
+        position=position, along=size.along, length=size.length, width=size.width,
+        depth=deepest.depth, reach=section_reach(deepest),
+        excess=excess, waves=waves, scatter=scatter,
+        w2_max=float(w2.max()), w2_area=w2_area, stretch_share=share, cause=cause_of(share),
+        near_kind=kind, near=name, distance=distance,
+    )  # fmt: skip
+
+
+def _excess(cuts: Sequence[Profile]) -> tuple[float, float, float]:
+    """Excess, the waves in it, and its scatter, from sections along a wrinkle."""
+    total = np.array([cut.waves + cut.compression for cut in cuts])
+    # Cuts near a border end before the crest: the middle one of all is none of them.
+    middle = int(np.argsort(total)[len(total) // 2])
+    error = float(total.std(ddof=1) / np.sqrt(len(total))) if len(total) > 1 else float(total[0])
+    return float(total[middle]), cuts[middle].waves, 2.0 * error
 
 
 def _stations(cover: Cover, faces: IntArray, w2: FloatArray, along: FloatArray) -> list[int]:
@@ -186,18 +213,35 @@ def _stations(cover: Cover, faces: IntArray, w2: FloatArray, along: FloatArray) 
     return [int(faces[rows[np.argmax(w2[rows])]]) for rows in stretches if len(rows)]
 
 
-def _extent(corners: FloatArray, area: FloatArray) -> tuple[FloatArray, float, float]:
-    """Axis, length and width of the rectangle with the same second moments."""
-    centre = corners.mean(axis=1)
-    weight = area / area.sum()
-    off = centre - weight @ centre
-    # A triangle's own second moment about its centroid is that of its corners over 4.
-    own = corners - centre[:, None]
-    moments = np.einsum("f,fi,fj->ij", weight, off, off)
-    moments += np.einsum("f,fci,fcj->ij", weight, own, own) / 12.0
-    values, axes = np.linalg.eigh(moments)
-    width, length = np.sqrt(12.0 * np.maximum(values, 0.0))
-    return axes[:, 1], float(length), float(width)
+def _kind(
+    solution: Solution,
+    wrinkle: Wrinkle,
+    wavelengths: Sequence[float | None],
+    corners: IntArray,
+) -> Kind:
+    """Tell wrinkles from what a tie, a corner or a single element makes."""
+    cover = solution.cover
+    near = (wavelengths[cover.panel_names.index(wrinkle.panel)] or 2.0 * wrinkle.reach) / 4.0
+    ties = [anchor.points.at(solution.positions) for anchor in cover.anchors]
+    tie, corner = (
+        float(np.linalg.norm(points - wrinkle.position, axis=1).min(initial=np.inf))
+        for points in (np.concatenate(ties) if ties else np.zeros((0, 3)),
+                       solution.positions[corners])
+    )  # fmt: skip
+    if min(tie, corner) <= near:
+        return "tie" if tie <= corner else "corner"
+    return "spot" if wrinkle.length < _SMALLEST * cover.element_size else "wrinkle"
+
+
+def _corners(cover: Cover) -> IntArray:
+    """Vertices at which the outline of a panel turns sharply."""
+    edges = cover.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)[boundary_sides(cover.faces)]
+    step = cover.rest[edges[:, 1]] - cover.rest[edges[:, 0]]
+    ahead, behind = np.zeros_like(cover.rest), np.zeros_like(cover.rest)
+    ahead[edges[:, 0]], behind[edges[:, 1]] = step, step
+    cross = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+    turn = np.abs(np.arctan2(cross, (behind * ahead).sum(axis=1)))
+    return np.flatnonzero(turn > _CORNER)
 
 
 def _nearest(cover: Cover, x: FloatArray, position: FloatArray) -> tuple[str, str, float]:
@@ -221,34 +265,3 @@ def _nearest(cover: Cover, x: FloatArray, position: FloatArray) -> tuple[str, st
     beside = [f for f in distances if f[1] == "seam" and f[0] <= nearest[0] + cover.element_size]
     distance, kind, name = min(beside, default=nearest)
     return kind, name, distance
-
-
-def _ease(cover: Cover, name: str) -> float:
-    """Share by which one sewn line is longer than the other at rest."""
-    stitching = next(s for s in cover.stitchings if s.name == name)
-    a, b = _sewn_lengths(cover, stitching)
-    return max(a, b) / min(a, b) - 1.0 if min(a, b) > 0 else 0.0
-
-
-def _sewn_lengths(cover: Cover, stitching: Stitching) -> tuple[float, float]:
-    """Rest length [m] of both sides between the same pairs, within panels."""
-    panel = np.zeros(len(cover.rest), dtype=np.int64)
-    panel[cover.faces] = cover.panel[:, None]
-    sides = (stitching.a, stitching.b)
-    steps = [mesh.segment_lengths(s.at(cover.rest)) for s in sides]
-    owners = [panel[s.vertices[:, 0]] for s in sides]
-    within = np.logical_and.reduce([np.diff(o) == 0 for o in owners])
-    return float(steps[0][within].sum()), float(steps[1][within].sum())
-
-
-def _advice(cause: Cause, kind: str, name: str, ease: float) -> str:
-    """Say what the method's authors advise for the cause at this place."""
-    if cause == "compression":
-        if kind == "seam" and ease > _EQUAL:
-            return (
-                f"fabric in excess: make the two lines of seam {name} equally long; "
-                f"they differ by {100 * ease:.1f} %"
-            )
-        return "fabric in excess: take length out of the panel beside the wrinkle"
-    where = f" at {kind} {name}" if name else ""
-    return f"uneven stretch: balance the in-plane stress{where}, by hooking or by the foam's height"

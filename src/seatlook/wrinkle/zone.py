@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.model import Cover, FloatArray, WrinkleMap
+from seatlook.model import Cover, Criteria, FloatArray, WrinkleMap
 from seatlook.wrinkle.recovery import recovery_error
 from seatlook.wrinkle.registry import INDICES, STATISTICS, mean
 
@@ -22,6 +22,7 @@ class ZoneRow:
 
     Parameters
     ----------
+    criterion : mode and threshold of its W2, "tensor, 0.02 per mm"
     area : [m2]
     element_size : [m]              mean edge length h of the zone's faces at rest
     stretch_share : [1] in [0, 1]   part of the zone's W2 that is W_stretch; 0 where W2 is 0
@@ -34,6 +35,7 @@ class ZoneRow:
     """
 
     zone: str
+    criterion: str
     area: float
     element_size: float
     stretch_share: float
@@ -47,12 +49,13 @@ class ZoneRow:
         return self.figures[name]
 
     def values(self) -> dict[str, str | float | bool]:
-        """Return the whole row as plain values, the figures last; companions that are known."""
+        """Return the row as plain values, units in the names; companions that are known."""
         companions = {"w2_mesh_error": self.w2_mesh_error, "w2_scatter": self.w2_scatter}
         return {
             "zone": self.zone,
-            "area": self.area,
-            "element_size": self.element_size,
+            "criterion": self.criterion,
+            "area_cm2": 1e4 * self.area,
+            "element_size_mm": 1e3 * self.element_size,
             "stretch_share": self.stretch_share,
             "w2_face_rms": self.w2_face_rms,
             "resolved": self.resolved,
@@ -65,6 +68,7 @@ def zone_table(
     cover: Cover,
     values: Mapping[str, FloatArray],
     *,
+    criteria: Criteria,
     unresolved: npt.NDArray[np.bool_] | None = None,
     known: Mapping[str, float] = MappingProxyType({}),
 ) -> tuple[ZoneRow, ...]:
@@ -73,6 +77,7 @@ def zone_table(
     Parameters
     ----------
     values : name of an index of the registry -> (m,) in its unit; W2 and W_stretch among them
+    criteria : by which they were evaluated
     unresolved : (m,) bool   faces that the mesh does not carry
     known : figures of a result, with the companions of its zones where they were measured
     """
@@ -90,6 +95,7 @@ def zone_table(
         rows.append(
             ZoneRow(
                 zone=name,
+                criterion=criteria.words(cover.panel[inside]),
                 area=float(weight.sum()),
                 element_size=float(side[inside].mean()),
                 stretch_share=stretch / w2 if w2 > 0 else 0.0,

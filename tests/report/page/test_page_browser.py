@@ -48,7 +48,7 @@ def pictures(page: Any) -> tuple[str, str]:
 
 def test_all_images_decode(page):
     assert all_images_decode(page)
-    assert page.locator("img").count() == 15
+    assert page.locator("img").count() == 16
 
 
 def test_the_slider_wipes_by_keyboard_and_by_mouse(page):
@@ -206,9 +206,10 @@ def test_side_by_side_both_pictures_scroll_and_enlarge_together(page):
     assert page.locator("#beside .over").is_visible()
     page.evaluate("for (const p of document.querySelectorAll('.stage')) p.style.width = '100px'")
     page.get_by_label("Size").select_option("4")
-    widths = "[...document.querySelectorAll('.sheet')].map(s => s.clientWidth)"
+    widths = "[...document.querySelectorAll('.bench .sheet')].map(s => s.clientWidth)"
     assert page.evaluate(widths) == [256, 256]
-    left = "[...document.querySelectorAll('.stage')].map(p => p.scrollLeft)"
+    left = "[...document.querySelectorAll('.bench .stage')].map(p => p.scrollLeft)"
+    assert page.evaluate(left) == [78, 78]
     page.evaluate("document.querySelector('#stage').scrollLeft = 30")
     page.wait_for_function(f"{left}.join() === '30,30'")
     beside.scroll_into_view_if_needed()
@@ -245,7 +246,7 @@ def test_a_large_picture_is_dragged(page):
     page.mouse.down()
     page.mouse.move(box["x"] + 30, box["y"] + 20)
     page.mouse.up()
-    assert page.evaluate("document.querySelector('#stage').scrollLeft") == 50
+    assert page.evaluate("document.querySelector('#stage').scrollLeft") == 78 + 50
 
 
 def test_the_list_of_keys_opens_and_closes(page):
@@ -312,7 +313,9 @@ def test_a_page_of_thirty_cells_is_light_and_opens_at_once(browser, tmp_path):
 
 
 def test_every_control_is_reached_by_tab(page):
-    wanted = page.locator("a[href], button:visible, select, input, [tabindex='0']").count()
+    wanted = page.locator(
+        "a[href]:visible, button:visible, select:visible, input:visible, [tabindex='0']:visible"
+    ).count()
     seen = set()
     for _ in range(wanted + 5):
         page.keyboard.press("Tab")
@@ -326,18 +329,28 @@ def test_nothing_overflows_in_a_narrow_window(page):
     assert page.locator(".narrow").first.is_visible()
 
 
-def test_no_accessibility_violation(browser, address):
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+@pytest.mark.parametrize("width", [360, 1280, 1920])
+def test_no_accessibility_violation_in_any_window(browser, address, width, scheme):
     axe = importlib.import_module("axe_playwright_python.sync_playwright").Axe()
     # The checker is injected as a script, which the page's own policy rightly refuses.
-    context = browser.new_context(offline=True, bypass_csp=True)
+    context = browser.new_context(
+        offline=True, bypass_csp=True, viewport={"width": width, "height": 900}, color_scheme=scheme
+    )
     page = context.new_page()
+    messages: list[str] = []
+    page.on("console", lambda message: messages.append(message.text))
     page.goto(address)
-    for steps in ((), ("m", "m", "m"), ("?",)):  # as it opens, side by side, with the list of keys
+    page.evaluate("for (const d of document.querySelectorAll('details')) d.open = true")
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    # As it opens, side by side, with the list of keys.
+    for steps in ((), ("m", "m", "m"), ("?",)):
         for key in steps:
             page.keyboard.press(key)
         result = axe.run(page)
         assert result.violations_count == 0, result.generate_report()
     context.close()
+    assert messages == []
 
 
 def test_without_scripts_pictures_and_maps_remain(browser, address):
@@ -346,5 +359,6 @@ def test_without_scripts_pictures_and_maps_remain(browser, address):
     page.goto(address)
     assert "allow scripts for this file" in page.locator("#compare").inner_text()
     assert page.locator("img:visible").count() == 8
+    assert not page.locator(".fold").count()
     assert not page.locator(".pick").first.is_visible()
     context.close()

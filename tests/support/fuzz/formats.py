@@ -20,6 +20,7 @@ from seatlook.files import read_text
 from seatlook.io.curves import read_curves
 from seatlook.io.export.film import read_shapes, write_shapes
 from seatlook.io.export.result import read_result, write_result
+from seatlook.io.laboratory.read import read_laboratory
 from seatlook.io.lsdyna.d3plot.reader import read_d3plot
 from seatlook.io.lsdyna.shells import read_shells
 from seatlook.io.material import materials_dir, read_foam_material, read_material
@@ -34,6 +35,7 @@ from seatlook.io.texture_maps import read_texture_maps
 from seatlook.jury.votes import merge_votes
 from support.fuzz import mutate, structure
 from support.io_samples import box, solution
+from support.lab_files import STRIP, TESTS, write_tests
 from support.scene_files import write_two_panels
 
 DATA = Path(__file__).parents[2] / "data"
@@ -168,6 +170,20 @@ def _materials(folder: Path) -> list[bytes]:
     (folder / "maps/a_Color.png").write_bytes(_picture("PNG")(folder)[0])
     own = [p.read_bytes() for p in sorted(materials_dir().glob("[bs]*.toml"))]
     return own + _files("corpus/material/*")(folder)
+
+
+def _tests(folder: Path) -> list[bytes]:
+    write_tests(folder)
+    return [TESTS.encode()]
+
+
+def _strip(folder: Path) -> list[bytes]:
+    write_tests(folder)
+    return [STRIP.encode()]
+
+
+def _read_strip(path: Path) -> object:
+    return read_laboratory(path.parent / "tests.toml")
 
 
 def _sweep(folder: Path) -> list[bytes]:
@@ -347,6 +363,8 @@ FORMATS: dict[str, Format] = {
         lambda f: [(materials_dir() / "foam-seat.toml").read_bytes()],
         structure.toml, "material",
     ),
+    "tests": Format("t.toml", read_laboratory, _tests, structure.toml, "tests"),
+    "curve": Format("strip.csv", _read_strip, _strip, mutate.text, "tests"),
     "sweep": Format("w.toml", read_sweep, _sweep, structure.toml, "sweep"),
     "votes": Format("v.json", _read_votes, _votes, mutate.tree, "votes"),
     "result": Format("r.npz", read_result, _result, mutate.npz, "result"),

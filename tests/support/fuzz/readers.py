@@ -25,6 +25,7 @@ READERS: dict[str, Reader] = {
     "seams": Reader(("io/pattern/seams", "io/pattern/allowance"), ("read_seams",)),
     "curves": Reader(("io/curves",), ("read_curves",)),
     "material": Reader(("io/material", "io/colour"), ("read_material", "read_foam_material")),
+    "tests": Reader(("io/laboratory/",), ("read_laboratory",)),
     "sweep": Reader(("io/sweep",), ("read_sweep",)),
     "votes": Reader(("jury/votes",), ("merge_votes",)),
     "result": Reader(

@@ -32,6 +32,7 @@ from seatlook.model import (
     Foam,
     FoamMaterial,
     Hem,
+    Hysteresis,
     Material,
     Points,
     Solution,
@@ -49,8 +50,8 @@ _WHOLE = "a whole result file of seatlook"
 _TYPES: dict[str, type] = {
     t.__name__: t
     for t in (
-        Anchor, Appearance, Cover, Criteria, Curve, Fabric, Foam, FoamMaterial, Hem, Material,
-        Points, Solution, Stage, Stitching, TextureMaps, Thread, Wire,
+        Anchor, Appearance, Cover, Criteria, Curve, Fabric, Foam, FoamMaterial, Hem, Hysteresis,
+        Material, Points, Solution, Stage, Stitching, TextureMaps, Thread, Wire,
     )
 }  # fmt: skip
 

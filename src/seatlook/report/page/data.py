@@ -11,6 +11,7 @@ from seatlook.errors import InputError
 from seatlook.model.table import Table
 from seatlook.report.page.types import (
     Check,
+    CloseUp,
     DesignSection,
     MakingSection,
     MapView,
@@ -94,7 +95,11 @@ class PageData:
     status : of the solver, such as "converged"
     warnings : sentences to read before the pictures are trusted
     baseline : the variant that changes in ``differences`` and ``zones`` are from
-    summary : sentences that answer the page's questions, above everything else
+    summary : sentences that answer the page's questions, above everything else; the first is read
+        first
+    close_up : the picture beside them
+    verdict : the status in one word
+    again : command that makes the page anew as one file; "" where there is none
     facing : the two cells that are compared first; the first two of the grid if not given
     history : column -> values, one per solver step; "time" is the horizontal axis if present
     files : paths of what else lies in the folder, such as "zones.csv"
@@ -129,6 +134,9 @@ class PageData:
     files: tuple[str, ...] = ()
     baseline: str = ""
     summary: tuple[str, ...] = ()
+    close_up: CloseUp | None = None
+    verdict: str = ""
+    again: str = ""
     facing: tuple[tuple[str, str], tuple[str, str]] | None = None
 
     def __post_init__(self) -> None:

@@ -133,6 +133,59 @@ class DesignSection:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SeenPlace:
+    """A place where wrinkles show, or where there is one that does not.
+
+    Parameters
+    ----------
+    rank : of the wrinkle there, from 1; None for a zone without one
+    zone : name
+    shows : whether it is seen in any texture under any rig
+    texture, rig, vwi : where it is seen most, and how much
+    hidden_by : textures in which no rig shows it
+    x, y : its pixel in the pictures
+    """
+
+    rank: int | None
+    zone: str
+    shows: bool
+    texture: str
+    rig: str
+    vwi: float
+    hidden_by: tuple[str, ...]
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CloseUp:
+    """A part of a picture beside the first sentence, round a pixel; or all of it.
+
+    Parameters
+    ----------
+    image : path of a picture of the page
+    caption : what it shows
+    at : (x, y) of the pixel that is marked; None for the whole picture
+    """
+
+    image: str
+    caption: str
+    at: tuple[float, float] | None = None
+
+    def window(self, size: tuple[int, int]) -> tuple[float, float, float, float]:
+        """Return (left, top, width, height) of the part that is shown, in pixels."""
+        if self.at is None:
+            return 0.0, 0.0, *size
+        share = 3.0
+        width, height = size[0] / share, size[1] / share
+        left, top = (
+            min(max(v - part / 2, 0.0), whole - part)
+            for v, part, whole in zip(self.at, (width, height), size, strict=True)
+        )
+        return left, top, width, height
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ScoreSection:
     """What the page shows of visibility; only ``refused`` is set where no score can be given.
 
@@ -143,6 +196,8 @@ class ScoreSection:
     zones : a row per zone: worst VWI of each texture, and its equivalent height
     sentences : what follows from them
     cells : (texture, rig) -> VWI, marked in the grid of pictures
+    places : wrinkles in view, and zones that show without one, the most visible first; None where
+        nobody looked
     """
 
     grid: Table | None = None
@@ -155,3 +210,4 @@ class ScoreSection:
     cells: MappingProxyType[tuple[str, str], float] = field(
         default_factory=lambda: MappingProxyType({})
     )
+    places: tuple[SeenPlace, ...] | None = None

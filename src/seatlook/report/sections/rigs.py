@@ -33,5 +33,9 @@ def _seen_at(light: Light) -> tuple[float, float]:
 def _described(light: Light) -> str:
     if light.near:
         x, y, z = (number(round(1e3 * v)) for v in light.vector)
-        return f"{light.name}, {number(light.intensity)} cd at ({x}, {y}, {z}) mm"
+        bulb = f"{light.name}, {number(light.intensity)} cd at ({x}, {y}, {z}) mm"
+        if not light.is_rectangle:
+            return bulb
+        long, short = (number(round(2e3 * side)) for side in np.linalg.norm(light.sides, axis=1))
+        return f"{bulb}, {long} x {short} mm"
     return f"{light.name}, {number(light.intensity)} lx facing"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -13,16 +14,19 @@ import numpy as np
 from seatlook.chain.evaluation import Evaluation
 from seatlook.errors import InputError
 from seatlook.files import file_names
-from seatlook.model import Limit
+from seatlook.model import Camera, Limit
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES
 from seatlook.model.table import Table, number
 from seatlook.pbr.maps.pixel_map import render_pixel_map
-from seatlook.report.page.types import Check, MapView, ScoreSection
+from seatlook.report.page.types import Check, MapView, ScoreSection, SeenPlace
+from seatlook.visibility.concentration import CONCENTRATED
 from seatlook.visibility.light_search import WorstLight
-from seatlook.visibility.observer import OBSERVER
+from seatlook.visibility.observer import FITTING, NULL_LIMIT, OBSERVER, TOO_LONG, VISIBLE
+from seatlook.visibility.pixels import MARGIN
+from seatlook.visibility.places import Place, places
 from seatlook.visibility.scoring import SceneScore
-from seatlook.visibility.view import NULL_LIMIT
+from seatlook.visibility.view import ELEMENTS_PER_WAVE
 
 _LEAST_TOP = 3.0  # of a map's range: the first value of D that counts as visible
 
@@ -40,7 +44,26 @@ def visibility(evaluation: Evaluation, progress: Progress | None = None) -> Scor
         return ScoreSection(
             refused=str(error), checks=tuple(_check(limit, "no score", False) for limit in limits)
         )
-    return score_section(scored, evaluation.folder)
+    assessment, panel = evaluation.case.assessment, evaluation.case.solution.cover.panel
+    valley = assessment.values("w2") * assessment.criteria.per_face(panel)
+    seen = places(scored, assessment.wrinkles, valley)
+    section = score_section(scored, evaluation.folder)
+    return replace(section, places=tuple(_seen(place, evaluation.camera) for place in seen))
+
+
+def _seen(place: Place, camera: Camera) -> SeenPlace:
+    (texture, rig), (x, y) = place.worst, camera.pixel(place.position)
+    return SeenPlace(
+        rank=place.rank,
+        zone=place.zone,
+        shows=place.shows,
+        texture=texture,
+        rig=rig,
+        vwi=place.vwi[place.worst],
+        hidden_by=place.hidden_by,
+        x=round(x, 1),
+        y=round(y, 1),
+    )
 
 
 def score_section(score: SceneScore, folder: Path) -> ScoreSection:
@@ -94,23 +117,27 @@ def cause_table(score: SceneScore) -> Table:
             "texture",
             "rig",
             "VWI",
+            "apparent contrast [%]",
             "VWI where W_stretch",
             "VWI where W_compression",
             f"D above {number(low)} [cm2]",
             f"D above {number(high)} [cm2]",
             "rms log ratio",
             "1 - SSIM",
+            "in 0.1 % of the pixels [%]",
         ),
         rows=tuple(
             (
                 texture,
                 rig,
                 sight.score.vwi,
+                sight.score.apparent_contrast,
                 sight.stretch,
                 sight.compression,
                 *(1e4 * area for area in sight.score.visible_area or (math.nan, math.nan)),
                 sight.measures.log_ratio,
                 sight.measures.dissimilarity,
+                100 * sight.peak.share,
             )
             for (texture, rig), sight in score.grid.sights.items()
         ),
@@ -122,7 +149,11 @@ def zone_table(score: SceneScore) -> Table:
     grid = score.grid
 
     def worst(zone: str, texture: str) -> tuple[float, str]:
-        vwi, rig = max((grid.sights[texture, r].zones[zone], r) for r in grid.rigs)
+        cells = [(grid.sights[texture, rig].zones.get(zone), rig) for rig in grid.rigs]
+        seen = [(vwi, rig) for vwi, rig in cells if vwi is not None]
+        if not seen:
+            return 0.0, "–"
+        vwi, rig = max(seen)
         ladder = score.ladder.zones[zone]
         return vwi, f"{number(vwi)}, {height_text(ladder.equivalent(vwi), ladder.top)} ({rig})"
 
@@ -143,7 +174,11 @@ def zone_table(score: SceneScore) -> Table:
 def sentences(score: SceneScore) -> Iterator[str]:
     """Say what follows from the tables."""
     grid, view = score.grid, score.view
-    yield f"Least visible texture under these lights: {grid.least_visible}."
+    least = grid.least_visible
+    if least is not None:
+        yield f"Least visible texture under these lights: {least}."
+    elif len(grid.textures) > 1:
+        yield "No texture can be told to be the least visible: the measures disagree."
     for first, second, rig in grid.not_separable():
         yield f"Not separable under {rig}: {first} and {second}; the measures disagree."
     yield (
@@ -151,11 +186,32 @@ def sentences(score: SceneScore) -> Iterator[str]:
         f"(95 % of their area). Reference: {view.mode}"
         + (f", cut-off {number(1e3 * view.cutoff)} mm." if view.mode != "design" else ".")
     )
+    size = 1e3 * view.element_size
+    yield (
+        f"Waves shorter than {number(ELEMENTS_PER_WAVE * size)} mm are left out: a mesh of "
+        f"{number(size)} mm does not carry them. So is what lies closer than "
+        f"{number(1e3 * MARGIN)} mm to a seam, a hem, a silhouette or a shadow that moves."
+    )
+    if score.peak.places:
+        yield (
+            f"At most {number(100 * score.peak.share)} % of a score lie in 0.1 % of its pixels "
+            f"({', '.join(score.peak.places)}); the limit is {number(100 * CONCENTRATED)} %."
+        )
+    fitting, too_long = (f"{number(low)} to {number(high)}" for low, high in (FITTING, TOO_LONG))
+    yield (
+        f"From {number(VISIBLE)} on wrinkles are visible. The middle panel of the demo cushion in "
+        f"black leather scores {fitting} where it fits, {too_long} beside a seam 3 % too long."
+    )
+    if len(grid.textures) > 1:
+        yield (
+            "Compare equivalent heights within one texture: across textures the model gives gloss "
+            "more weight than people do."
+        )
     yield (
         f"A cover without wrinkles scores at most {number(score.null)}; the limit is "
         f"{number(NULL_LIMIT)}."
     )
-    yield "The score is not yet calibrated by a jury of people."
+    yield f"The model observer is fitted {OBSERVER.calibrated}, not on wrinkles."
 
 
 def draw_maps(
@@ -166,10 +222,10 @@ def draw_maps(
     view, maps = score.view, []
     names = file_names(f"{texture}\n{rig}" for texture, rig in score.grid.sights)
     for texture, rig in cells:
-        visible = score.grid.sights[texture, rig].score
+        sight = score.grid.sights[texture, rig]
         picture = render_pixel_map(
             view.solution,
-            np.where(view.region.mask, visible.map, np.nan),
+            np.where(sight.mask, sight.score.map, np.nan),
             camera=view.camera,
             title=f"Visibility D of wrinkles: {texture}, {rig}",
             value_range=(0.0, top),
@@ -184,8 +240,8 @@ def draw_maps(
                 image=path,
                 low=0.0,
                 high=top,
-                meaning="visibility of wrinkles in thresholds of the model observer; seams and "
-                "silhouettes are left out",
+                meaning="visibility of wrinkles in thresholds of the model observer; seams, "
+                "hems, silhouettes and moving shadows are left out",
             )
         )
     return tuple(maps)
@@ -202,6 +258,8 @@ def score_values(
         "cutoff_mm": 1e3 * view.cutoff if view.mode != "design" else None,
         "calibrated": OBSERVER.calibrated,
         "null_vwi": score.null,
+        "shortest_wave_mm": 1e3 * ELEMENTS_PER_WAVE * view.element_size,
+        "highest_frequency_per_deg": view.highest_frequency,
         "height_mm": 1e3 * score.ladder.height,
         "ladder_mm": (1e3 * score.ladder.heights).tolist(),
         "ladder_vwi": score.ladder.vwi.tolist(),
@@ -234,14 +292,18 @@ def _cell_values(score: SceneScore, texture: str, rig: str) -> dict[str, Any]:
         "texture": texture,
         "rig": rig,
         "vwi": sight.score.vwi,
+        "apparent_contrast_percent": sight.score.apparent_contrast,
         "equivalent_height_mm": _millimetres(score.grid.height[texture, rig]),
         "vwi_stretch": sight.stretch,
         "vwi_compression": sight.compression,
         "log_ratio": sight.measures.log_ratio,
         "dissimilarity": sight.measures.dissimilarity,
+        "share_in_top_pixels": sight.peak.share,
+        "top_pixels": list(sight.peak.places),
         "zones": {
             zone: {
                 "vwi": vwi,
+                "apparent_contrast_percent": sight.contrasts[zone],
                 "equivalent_height_mm": _millimetres(score.zone_height(zone, texture, rig)),
             }
             for zone, vwi in sight.zones.items()
@@ -258,8 +320,8 @@ def _light_values(light: WorstLight) -> dict[str, float]:
     }
 
 
-def _millimetres(height: float) -> float | None:
-    return 1e3 * height if math.isfinite(height) else None
+def _millimetres(height: float | None) -> float | None:
+    return 1e3 * height if height is not None and math.isfinite(height) else None
 
 
 def _cell(score: SceneScore, texture: str, rig: str) -> str:

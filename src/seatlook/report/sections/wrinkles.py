@@ -9,13 +9,14 @@ import numpy as np
 from seatlook.chain.assess import Assessment
 from seatlook.chain.draw import DISTORTION_MAPS
 from seatlook.chain.evaluation import Evaluation
+from seatlook.chain.framing import Mark, marks
 from seatlook.model import Camera
 from seatlook.model.table import Table, number
 from seatlook.model.zones import FREE_EDGE
 from seatlook.report.page.chart import HEIGHT, WIDTH, Tick
 from seatlook.report.page.types import MapView, Profile, Spot, WrinkleSection
 from seatlook.report.sections.maps import map_view
-from seatlook.wrinkle import Section, Wrinkle
+from seatlook.wrinkle import Section, Wrinkle, advice_on
 
 
 def wrinkle_section(evaluation: Evaluation) -> WrinkleSection:
@@ -44,8 +45,9 @@ def section_of(
     count : of the worst wrinkles; None for all that the assessment lists
     """
     wrinkles, sections = assessment.wrinkles[:count], assessment.sections[:count]
+    found = marks(assessment.solution, [w.position for w in wrinkles], camera)
     return WrinkleSection(
-        worst=_worst(wrinkles),
+        worst=_worst(assessment, wrinkles, [_view_words(camera, mark) for mark in found]),
         profiles=tuple(
             profile(f"Wrinkle {rank}, {w.panel}", cut)
             for rank, (w, cut) in enumerate(zip(wrinkles, sections, strict=True), 1)
@@ -53,16 +55,22 @@ def section_of(
         distortion=_distortion(assessment) if distortion else None,
         maps=maps,
         files=files,
-        spots=tuple(_spots(camera, wrinkles)),
+        spots=tuple(_spots(camera, found)),
     )
 
 
-def _spots(camera: Camera, wrinkles: Sequence[Wrinkle]) -> Iterator[Spot]:
-    """Pixels of the worst wrinkles, of those inside the picture."""
-    for rank, wrinkle in enumerate(wrinkles, 1):
-        x, y = camera.pixel(wrinkle.position)
-        if 0 <= x < camera.size[0] and 0 <= y < camera.size[1]:
-            yield Spot(label=f"wrinkle {rank}", x=round(x, 1), y=round(y, 1))
+def _spots(camera: Camera, found: Sequence[Mark]) -> Iterator[Spot]:
+    """Pixels of the worst wrinkles, of those that this camera sees."""
+    for rank, mark in enumerate(found, 1):
+        if mark.camera is camera:
+            yield Spot(label=f"wrinkle {rank}", x=round(mark.x, 1), y=round(mark.y, 1))
+
+
+def _view_words(camera: Camera, mark: Mark) -> str:
+    """In which view a wrinkle is seen."""
+    if mark.camera is None:
+        return "hidden in every view"
+    return "this view" if mark.camera is camera else f"hidden here; see {mark.camera.name}"
 
 
 def profile(name: str, cut: Section) -> Profile:
@@ -96,19 +104,22 @@ def profile(name: str, cut: Section) -> Profile:
     )
 
 
-def _worst(wrinkles: Sequence[Wrinkle]) -> Table:
+def _worst(assessment: Assessment, wrinkles: Sequence[Wrinkle], views: Sequence[str]) -> Table:
     return Table(
         heads=(
-            "", "panel", "length [mm]", "width [mm]", "depth [mm]", "W2 largest", "cause",
-            "stretch [% of W2]", "nearest", "away [mm]", "pattern u, v [mm]", "advice",
+            "", "kind", "panel", "length [mm]", "width [mm]", "depth [mm]", "excess [mm]",
+            "W2 at most", "cause", "stretch [% of W2]", "nearest", "away [mm]",
+            "pattern u, v [mm]", "seen in", "advice",
         ),
         rows=tuple(
             (
-                str(k), w.panel, 1e3 * w.length, 1e3 * w.width, 1e3 * w.depth, w.w2_max, w.cause,
+                str(k), w.kind, w.panel, 1e3 * w.length, 1e3 * w.width, 1e3 * w.depth,
+                f"{number(1e3 * w.excess)} ± {number(1e3 * w.scatter)}", w.w2_max, w.cause,
                 100 * w.stretch_share, f"{w.near_kind} {w.near}", 1e3 * w.distance,
-                ", ".join(f"{1e3 * v:.0f}" for v in w.uv), w.advice,
+                ", ".join(f"{1e3 * v:.0f}" for v in w.uv), view,
+                advice_on(w, k, assessment.advice),
             )
-            for k, w in enumerate(wrinkles, 1)
+            for k, (w, view) in enumerate(zip(wrinkles, views, strict=True), 1)
         ),
     )  # fmt: skip
 
