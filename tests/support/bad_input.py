@@ -131,6 +131,14 @@ _WRONG: dict[str, tuple[tuple[str, str, str], ...]] = {
         ("no shells", "*ELEMENT_SHELL", "*ELEMENT_BEAM"),
         ("no strains", "*INITIAL_STRAIN_SHELL", "*INITIAL_STRAIN_SOLID"),
     ),
+    "fabric card": (
+        ("another material", "*MAT_FABRIC_TITLE", "*MAT_ELASTIC_TITLE"),
+        ("a form without curves", "       -14", "         4"),
+        ("a curve that is not there", "       100       101", "       999       101"),
+        ("a field that is no number", "       -14", "       abc"),
+        ("no thickness", "*SECTION_SHELL", "*SECTION_SOLID"),
+        ("no curve along warp", "       100       101", "         0       101"),
+    ),
     "HDR": (
         ("not twice as wide as high", "+X 16", "+X 12"),
         ("upside down", "-Y 8", "+Y 8"),

@@ -101,7 +101,8 @@ def test_missing_units(write, problems):
     path = write("a.dxf", dxf({"A": [polyline("1", SQUARE), GRAIN]}, ()))
     assert problems(read_dxf, path) == [
         "a.dxf: UNITS: got no such text, expected METRIC or ENGLISH "
-        '(say units = "metric" if the file is in millimetres)'
+        '(say units = "metric" if the file is in millimetres; its longest line is 1000 mm if a '
+        "unit is a cm; 2540 mm if a unit is an inch)"
     ]
     (panel,) = read_dxf(path, units="metric")
     assert np.ptp(panel.outline, axis=0).tolist() == [0.1, 0.08]

@@ -49,8 +49,55 @@ def add_bulges(sheet, block):
     return 200 * 100 + np.pi * 50**2 / 2
 
 
+def add_fitted(sheet, block):
+    """Draw a fitted polyline, which holds the vertices of its frame beside those of the line."""
+    frame = [(-300, -200), (300, -200), (300, 200), (-300, 200)]
+    t = np.linspace(0, 2 * np.pi, 200, endpoint=False)
+    line = np.column_stack([200 * np.cos(t), 100 * np.sin(t)]).tolist()
+    polyline = block.add_polyline2d([*frame, *line], close=True, dxfattribs={"layer": "1"})
+    polyline.dxf.flags |= 4
+    for number, vertex in enumerate(polyline.vertices):
+        vertex.dxf.flags = 16 if number < len(frame) else 8
+    return np.pi * 200 * 100
+
+
+SQUARE = np.array([(-200.0, -200.0, 0.0), (200, -200, 0), (200, 200, 0), (-200, 200, 0)])
+
+
+def add_periodic_spline(sheet, block):
+    """Draw a closed cubic with single end knots."""
+    block.add_spline(dxfattribs={"layer": "1"}).set_closed(SQUARE.tolist())
+    return closed_cubic_area()
+
+
+def add_rational_periodic_spline(sheet, block):
+    """Draw the same with equal weights, which change nothing."""
+    spline = block.add_spline(dxfattribs={"layer": "1"})
+    spline.set_closed_rational(SQUARE.tolist(), [2.0] * 4)
+    return closed_cubic_area()
+
+
+def closed_cubic_area():
+    """Area [mm2] inside the cubics that the points of the square control."""
+    t = np.linspace(0.0, 1.0, 1001)
+    cubics = [(1 - t) ** 3, 3 * t**3 - 6 * t**2 + 4, -3 * t**3 + 3 * t**2 + 3 * t + 1, t**3]
+    pieces = [np.column_stack(cubics) @ np.roll(SQUARE, -k, axis=0) / 6 for k in range(4)]
+    return area(1e-3 * np.concatenate([piece[:-1, :2] for piece in pieces]))
+
+
 @pytest.mark.parametrize(
-    "draw", [add_circle, add_ellipse, add_spline, add_arcs, add_turned_arcs, add_bulges]
+    "draw",
+    [
+        add_circle,
+        add_ellipse,
+        add_spline,
+        add_periodic_spline,
+        add_rational_periodic_spline,
+        add_arcs,
+        add_turned_arcs,
+        add_bulges,
+        add_fitted,
+    ],
 )
 def test_curved_outlines(sheet, draw):
     expected = draw(sheet, sheet.block("A"))

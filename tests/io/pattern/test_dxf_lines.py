@@ -92,6 +92,40 @@ def test_cut_outs_on_either_layer_go_with_their_piece(sheet, layer):
         assert shapely.Polygon(panel.outline).contains(shapely.Polygon(hole))
 
 
+CUT_OUT = [(100, 30), (160, 30), (160, 70), (100, 70)]
+ROUND_IT = [(93, 23), (167, 23), (167, 77), (93, 77)]
+
+
+@pytest.mark.parametrize("layer", ["1", "11"])
+@pytest.mark.parametrize("sewn", [True, False])
+def test_a_cut_out_ends_at_its_own_sew_line(sheet, layer, sewn):
+    """The sew line round a cut-out is none of the outline, also where the outline has none."""
+    block = sheet.block("A", L_SHAPE)
+    sheet.line(block, CUT_OUT, layer)
+    sheet.line(block, CUT_OUT, "11")  # on both layers it is one
+    sheet.line(block, ROUND_IT, "14")
+    inner = [(10, 10), (290, 10), (290, 90), (110, 90), (110, 190), (10, 190)]
+    if sewn:
+        sheet.line(block, inner, "14")
+    sheet.insert("A")
+    panels, said = sheet.read()
+    (hole,) = panels["A"].holes
+    assert area(hole) == pytest.approx(74 * 54)
+    assert area(panels["A"].outline) == pytest.approx(280 * 80 + 100 * 100 if sewn else L_AREA)
+    assert said == []
+
+
+def test_in_a_narrow_ring_each_sew_line_goes_to_the_line_that_is_nearer(sheet):
+    block = sheet.block("A")
+    for layer, edge in (("1", 0), ("14", 4), ("14", 22), ("11", 26)):
+        ring = np.array([(0, 0), (300, 0), (300, 200), (0, 200)])
+        sheet.line(block, (ring + edge * np.sign([150, 100] - ring)).tolist(), layer)
+    sheet.insert("A")
+    panels, _ = sheet.read()
+    assert area(panels["A"].outline) == pytest.approx(292 * 192)
+    assert [area(hole) for hole in panels["A"].holes] == [pytest.approx(256 * 156)]
+
+
 def test_half_a_cut_out_is_unfolded_with_its_piece(sheet):
     block = sheet.block("A")
     sheet.line(block, [(0, 0), (200, 0), (200, 150), (0, 150)], closed=False)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seatlook.errors import InputError, InputWarning
-from seatlook.io import read_dxf
+from seatlook.io import read_dxf, report_dxf
 from support.dxf_sheet import L_AREA, L_SHAPE, Sheet, area, one_piece
 
 
@@ -121,8 +121,42 @@ def test_a_file_without_a_unit_is_in_mm_where_only_that_makes_a_piece(write):
         (panel,) = read_dxf(write("a.dxf", whole))
     assert area(panel.cut_outline) == pytest.approx(L_AREA)
     small = whole.replace("\n300\n", "\n200\n")
-    with pytest.raises(InputError, match="UNITS: got no such text"):
+    fitting = "2000 mm if a unit is a cm; 200 mm if a unit is a mm"
+    with pytest.raises(InputError, match=f"UNITS: got no such text.*its longest line is {fitting}"):
         read_dxf(write("b.dxf", small))
+
+
+def test_a_pattern_that_is_too_large_is_named(write):
+    whole = one_piece("A").replace("UNITS: METRIC", "UNITS: ENGLISH")
+    said = report_dxf(write("a.dxf", whole)).warnings()
+    assert said[-1].startswith(
+        "the largest piece is 7620 mm: is the pattern out of scale? (3000 mm"
+    )
+
+
+@pytest.mark.parametrize("ends", ["\r\n", "\r"])
+@pytest.mark.parametrize("tail", ["", "\x1a", "\n \n"])
+def test_line_ends_of_every_system(tmp_path, ends, tail):
+    (tmp_path / "a.dxf").write_bytes((one_piece("A") + tail).replace("\n", ends).encode())
+    (panel,) = read_dxf(tmp_path / "a.dxf")
+    assert area(panel.cut_outline) == pytest.approx(L_AREA)
+
+
+def test_decimal_commas_are_named(write, problems):
+    german = one_piece("A").replace("\n300\n", "\n300,5\n")
+    (message,) = problems(read_dxf, write("a.dxf", german))
+    assert message.endswith("(its numbers have a decimal comma, as 300,5)")
+
+
+def test_what_the_library_says_is_cut_short(write, problems):
+    (message,) = problems(read_dxf, write("a.dxf", "x" * 5000))
+    assert len(message) < 300
+
+
+def test_where_no_layer_is_an_outline_the_option_for_layers_is_named(write, problems):
+    (message,) = problems(read_dxf, write("a.dxf", one_piece("A").replace("\n8\n1\n", "\n8\nS\n")))
+    assert "layers with entities: 7, S;" in message
+    assert "--layer NAME=CUT" in message
 
 
 OWN_LAYERS = {"Schnitt": "CUT", "naht": "sew", "Laufrichtung": "7"}

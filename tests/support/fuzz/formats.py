@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import random
 import zlib
@@ -15,13 +14,14 @@ from typing import Any
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.exr import write_exr
 from seatlook.files import read_text
 from seatlook.io.curves import read_curves
 from seatlook.io.export.film import read_shapes, write_shapes
 from seatlook.io.export.result import read_result, write_result
 from seatlook.io.laboratory.read import read_laboratory
 from seatlook.io.lsdyna.d3plot.reader import read_d3plot
+from seatlook.io.lsdyna.fabric_card import card_of
+from seatlook.io.lsdyna.fabric_deck import material_of, read_fabric_card, write_fabric_card
 from seatlook.io.lsdyna.shells import read_shells
 from seatlook.io.material import materials_dir, read_foam_material, read_material
 from seatlook.io.panorama import read_panorama
@@ -31,9 +31,8 @@ from seatlook.io.scene.read import load_scene
 from seatlook.io.surface.design import read_surface
 from seatlook.io.surface.foam import read_foam
 from seatlook.io.sweep import read_sweep
-from seatlook.io.texture_maps import read_texture_maps
 from seatlook.jury.votes import merge_votes
-from support.fuzz import mutate, structure
+from support.fuzz import mutate, pictures, structure
 from support.io_samples import box, solution
 from support.lab_files import STRIP, TESTS, write_tests
 from support.scene_files import write_two_panels
@@ -167,7 +166,7 @@ def _curves(folder: Path) -> list[bytes]:
 
 def _materials(folder: Path) -> list[bytes]:
     (folder / "maps").mkdir()
-    (folder / "maps/a_Color.png").write_bytes(_picture("PNG")(folder)[0])
+    (folder / "maps/a_Color.png").write_bytes(pictures.seeds("PNG")(folder)[0])
     own = [p.read_bytes() for p in sorted(materials_dir().glob("[bs]*.toml"))]
     return own + _files("corpus/material/*")(folder)
 
@@ -281,73 +280,26 @@ def _deck_ways(path: Path) -> object:
     return _states(read_shells, path, reference=reference, **_state_options(path))
 
 
-def _picture(kind: str, **options: object) -> Callable[[Path], list[bytes]]:
-    def seeds(folder: Path) -> list[bytes]:
-        from PIL import Image
-
-        ramp = (np.arange(24 * 20 * 3) % 251).astype(np.uint8).reshape(20, 24, 3)
-        whole = Image.fromarray(ramp)
-        pictures = [whole, whole.convert("L"), whole.convert("P"), whole.convert("RGBA")]
-        pictures.append(Image.fromarray(ramp[..., 0].astype(np.uint16) * 257))
-        pictures += [whole.convert("1"), Image.fromarray(ramp[..., 0].astype(np.float32))]
-        made = []
-        for picture in pictures:
-            out = io.BytesIO()
-            try:
-                picture.save(out, kind, **options)
-            except OSError:
-                continue  # a mode that the format does not have
-            made.append(out.getvalue())
-        return made
-
-    return seeds
-
-
-def _maps(path: Path) -> object:
-    return read_texture_maps(path.parent, width=0.1)
-
-
-def _folder(path: Path) -> object:
-    """The bytes are the names of the pictures in a folder."""
-    names = path.read_text("utf-8", "replace").replace("\0", "").split("\n")
-    folder = path.with_suffix("")
-    for old in folder.glob("*"):
-        old.unlink()
-    folder.mkdir(exist_ok=True)
-    picture = [*_picture("PNG")(folder), *_exr(folder)]
-    for number, name in enumerate(names):
-        if name.strip("/. ") and "/" not in name and len(name.encode()) < 200:
-            (folder / name).write_bytes(picture[number % len(picture)])
-    return read_texture_maps(folder, width=0.1)
-
-
-_NAMES = (
-    "a_Color.png\na_Roughness.jpg\na_Metalness.tif\na_NormalGL.png\na_NormalDX.png\na_arm.png",
-    "a_Color.exr",
-    "a_Color.png\na_Roughness.png\nb_Color.png",
-    "a_NormalDX.png\na_arm.png",
-)
-_HDR = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n"
-
-
-def _hdr(folder: Path) -> list[bytes]:
-    pixel = (32, 64, 128, 131)
-    run = bytes([2, 2, 0, 16]) + b"".join(bytes([144, value]) for value in pixel)
-    literal = bytes([2, 2, 0, 16]) + b"".join(bytes([16]) + bytes([v] * 16) for v in pixel)
-    return [_HDR + 8 * run, _HDR + 8 * literal, _HDR + bytes(pixel) * 128]
-
-
-def _exr(folder: Path) -> list[bytes]:
-    import OpenEXR
-
-    write_exr(np.ones((8, 16, 3), np.float32), folder / "seed.exr")
-    made = [(folder / "seed.exr").read_bytes()]
-    halves = np.linspace(-0.1, 2.0, 128, dtype=np.float16).reshape(8, 16)
-    for channels in ({"Y": halves}, {"Z": halves}, {"A": halves, "B": halves}):
-        kinds = {"compression": OpenEXR.ZIPS_COMPRESSION, "type": OpenEXR.scanlineimage}
-        OpenEXR.File(kinds, channels).write(str(folder / "seed.exr"))
-        made.append((folder / "seed.exr").read_bytes())
+def _cards(folder: Path) -> list[bytes]:
+    """Write cards with coats and without, and one with a card of venting between."""
+    made = []
+    for name, coat in (("black-leather", True), ("leather-laminate", False)):
+        fabric = read_material(name).fabric
+        write_fabric_card(folder / "seed.k", card_of(fabric, title=name, coat=coat))
+        made.append((folder / "seed.k").read_bytes())
+    lines = made[0].split(b"\n")
+    form = next(k for k, line in enumerate(lines) if line[50:60].strip() == b"-14")
+    vented = lines[form][:60] + b"%10d" % -1 + lines[form][70:]
+    made.append(b"\n".join([*lines[:form], vented, b"%10d" % 0 * 8, *lines[form + 1 :]]))
     return made
+
+
+def _read_card(path: Path, thickness: float | None = None) -> object:
+    return material_of(read_fabric_card(path, thickness=thickness), read_material("woven"), path)
+
+
+def _card_ways(path: Path) -> object:
+    return _read_card(path, (None, 1.2)[_number(path) % 2])
 
 
 FORMATS: dict[str, Format] = {
@@ -384,13 +336,22 @@ FORMATS: dict[str, Format] = {
         "a.k", partial(_states, read_shells), _files("lsdyna/k/*.k", "corpus/deck/*"),
         structure.deck, "deck", _deck_ways,
     ),
-    "JPEG": Format("a_Color.jpg", _maps, _picture("JPEG"), structure.jpeg, "texture maps"),
-    "TIFF": Format(
-        "a_Color.tif", _maps, _picture("TIFF", compression="tiff_lzw"), structure.tiff,
-        "texture maps",
+    "fabric card": Format(
+        "m.k", _read_card, _cards, structure.deck, "fabric card", _card_ways
     ),
-    "PNG": Format("a_Color.png", _maps, _picture("PNG"), mutate.png, "texture maps"),
-    "texture folder": Format("n.txt", _folder, _texts(*_NAMES), mutate.text, "texture maps"),
-    "HDR": Format("a.hdr", read_panorama, _hdr, mutate.binary, "panorama"),
-    "EXR": Format("a.exr", read_panorama, _exr, structure.exr, "panorama"),
+    "JPEG": Format(
+        "a_Color.jpg", pictures.read_maps, pictures.seeds("JPEG"), structure.jpeg, "texture maps"
+    ),
+    "TIFF": Format(
+        "a_Color.tif", pictures.read_maps, pictures.seeds("TIFF", compression="tiff_lzw"),
+        structure.tiff, "texture maps",
+    ),
+    "PNG": Format(
+        "a_Color.png", pictures.read_maps, pictures.seeds("PNG"), mutate.png, "texture maps"
+    ),
+    "texture folder": Format(
+        "n.txt", pictures.read_folder, _texts(*pictures.NAMES), mutate.text, "texture maps"
+    ),
+    "HDR": Format("a.hdr", read_panorama, pictures.hdr, mutate.binary, "panorama"),
+    "EXR": Format("a.exr", read_panorama, pictures.exr, structure.exr, "panorama"),
 }  # fmt: skip

@@ -40,6 +40,9 @@ READERS: dict[str, Reader] = {
         ("io/lsdyna/d3plot/", "io/lsdyna/element_tables"), ("read_d3plot",)
     ),
     "deck": Reader(("io/lsdyna/deck/", "io/lsdyna/element_tables"), ("read_keyword",)),
+    "fabric card": Reader(
+        ("io/lsdyna/fabric_deck", "io/lsdyna/fabric_card"), ("read_fabric_card", "material_of")
+    ),
     "texture maps": Reader(("io/texture_maps",), ("read_texture_maps",)),
     "panorama": Reader(("io/panorama", "exr"), ("read_panorama", "read_exr")),
 }  # fmt: skip

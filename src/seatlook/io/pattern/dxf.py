@@ -32,7 +32,7 @@ from seatlook.io.pattern.units import Units, millimetres_per_unit, other_unit
 from seatlook.model import Panel
 
 SMALLEST_NOTCH = 0.005  # m
-_SMALLEST_PATTERN_MM = 80.0
+_SMALLEST_PATTERN_MM, _LARGEST_PATTERN_MM = 80.0, 3000.0
 
 
 class Reading(TypedDict, total=False):
@@ -217,10 +217,12 @@ def _pieces(
     if drawing.document.modelspace() and has_line(drawing.document.modelspace(), BOUNDARY):
         _add_loose(drawing, pieces, report)
     if not pieces:
-        layers = ", ".join(layers_of(drawing.document)) or "none"
+        layers = layers_of(drawing.document)
         raise InputError.single(
             "pieces", got="none", expected="blocks with an outline on layer 1", file=drawing.path,
-            hint=f"layers with entities: {layers}; export as AAMA or ASTM D6673",
+            hint=f"layers with entities: {', '.join(layers) or 'none'}; export as AAMA or ASTM "
+            "D6673, or say which layer holds the outlines: --layer NAME=CUT, in a scene "
+            '[pattern.layers] NAME = "CUT"',
         )  # fmt: skip
     return pieces
 
@@ -264,9 +266,9 @@ def _report_piece(
 
 
 def _check_scale(panels: tuple[Panel, ...], drawing: Drawing, report: PatternReport) -> None:
-    """Name a whole pattern that is too small for a cover."""
+    """Name a whole pattern that is too small for a cover, or too large."""
     largest = 1e3 * max(float(np.ptp(panel.cut_outline, axis=0).max()) for panel in panels)
-    if largest < _SMALLEST_PATTERN_MM:
+    if not _SMALLEST_PATTERN_MM <= largest <= _LARGEST_PATTERN_MM:
         other = other_unit(report.mm_per_unit, largest, drawing.header)
         report.notes.append(
             f"the largest piece is {largest:.4g} mm: is the pattern out of scale? ({other})"

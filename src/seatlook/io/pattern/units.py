@@ -19,6 +19,8 @@ MM_PER_UNIT = {
 }  # fmt: skip
 _INSUNITS = {"1": 25.4, "2": 304.8, "4": 1.0, "5": 10.0, "6": 1000.0, "10": 914.4, "14": 100.0}
 _ONLY_MM = (250.0, 10_000.0)  # longest lines; in cm the piece would be 2.5 m or more
+_COVERS = (("a cm", 10.0), ("an inch", 25.4), ("a mm", 1.0), ("a m", 1000.0))
+_COVER_MM = (150.0, 3000.0)  # sizes of the largest piece of a cover
 _MEASUREMENT = {"0": 25.4, "1": 1.0}
 
 
@@ -57,20 +59,27 @@ def millimetres_per_unit(
     if _ONLY_MM[0] <= size <= _ONLY_MM[1]:
         notes.append(f"the file names no unit: read in mm, as its longest line is {size:.4g}")
         return 1.0
+    readings = "; ".join(_in_each_unit(size))
     raise InputError.single(
         "UNITS", got="no such text", expected="METRIC or ENGLISH", file=path,
-        hint="say units = \"metric\" if the file is in millimetres",
+        hint='say units = "metric" if the file is in millimetres'
+        + (f"; its longest line is {readings}" if readings else ""),
     )  # fmt: skip
 
 
 def other_unit(scale: float, size: float, header: Mapping[str, str]) -> str:
     """Return in which unit a pattern would have the size [mm] of a cover, as a hint."""
     named = _INSUNITS.get(header.get("$INSUNITS", ""))
-    others = (("cm", 10.0), ("inch", 25.4), ("mm", 1.0), ("m", 1000.0))
-    fitting = [
-        f"{size * mm / scale:.4g} mm if a unit is a {name}" if name != "inch" else
-        f"{size * mm / scale:.4g} mm if a unit is an inch"
-        for name, mm in sorted(others, key=lambda other: other[1] != named)
-        if mm != scale and 150 <= size * mm / scale <= 3000
-    ]  # fmt: skip
+    fitting = _in_each_unit(size / scale, named, besides=scale)
     return fitting[0] if fitting else f"{10 * size:.4g} mm at ten times the scale"
+
+
+def _in_each_unit(
+    size: float, first: float | None = None, *, besides: float | None = None
+) -> list[str]:
+    """Return what a size in units of the file is, in each unit in which it is one of a cover."""
+    return [
+        f"{size * mm:.4g} mm if a unit is {name}"
+        for name, mm in sorted(_COVERS, key=lambda one: one[1] != first)
+        if mm != besides and _COVER_MM[0] <= size * mm <= _COVER_MM[1]
+    ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +20,9 @@ from seatlook.io.pattern.drawing.log import listening, loses_a_piece
 
 _BINARY = b"AutoCAD Binary DXF"
 _STAND_IN = "seatlook-block-"
+_DECIMAL_COMMA = re.compile(rb"^[ \t]*[1-5]?\d[ \t]*\r?\n[ \t]*(-?\d+,\d+)[ \t]*\r?$", re.MULTILINE)
+_ERROR_NAME = re.compile(r"^\w+Error: ")
+_LONGEST_GOT = 200  # characters of what the library says
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,12 +71,14 @@ def open_drawing(path: Path, encoding: str | None = None) -> Drawing:
                 text, guess = decode(content, path, encoding)
                 if guess is not None:
                     notes.append(f"no code page is given: read as {guess}, a guess")
-                text = _with_safe_names(text, path, names, header, notes)
+                text = _with_safe_names(_with_plain_ends(text), path, names, header, notes)
                 document = ezdxf.filemanagement.read(io.StringIO(text))
         except InputError:
             raise
         except Exception as error:  # on damaged files it raises whatever it stumbles over
-            raise refusal(path, error) from error
+            comma = b"," in content and _DECIMAL_COMMA.search(content)
+            hint = f"its numbers have a decimal comma, as {comma[1].decode()}" if comma else ""
+            raise refusal(path, error, hint) from error
     lost = [message for message in messages if loses_a_piece(message)]
     if lost:
         raise InputError.single("file", got=lost[0], expected="a whole DXF file", file=path)
@@ -108,10 +114,17 @@ def assign_layers(path: Path, document: Any, layers: Mapping[str, str]) -> None:
         entity.dxf.layer = wanted.get(entity.dxf.layer.casefold(), entity.dxf.layer)
 
 
-def refusal(path: Path, error: Exception) -> InputError:
+def refusal(path: Path, error: Exception, hint: str = "") -> InputError:
     """Return what to raise for whatever the library stumbled over."""
-    got = str(error).rstrip(".") or type(error).__name__
-    return InputError.single("file", got=got, expected="a whole DXF file", file=path)
+    got = _ERROR_NAME.sub("", str(error)).rstrip(".") or type(error).__name__
+    got = got if len(got) <= _LONGEST_GOT else got[:_LONGEST_GOT] + " ..."
+    return InputError.single("file", got=got, expected="a whole DXF file", file=path, hint=hint)
+
+
+def _with_plain_ends(text: str) -> str:
+    """End lines as the library wants it, and the file without the mark that DOS put there."""
+    plain = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n ")
+    return plain + "\n" if plain else plain
 
 
 def _with_safe_names(

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import ezdxf.path
 import numpy as np
+from scipy.interpolate import BSpline
 
 from seatlook.io.pattern.drawing.encoding import spelled_out
 from seatlook.io.pattern.drawing.layers import CURVE, LINE_LAYERS, UNREAD, meaning
@@ -19,6 +20,8 @@ _TEXTS = ("TEXT", "MTEXT", "ATTDEF", "ATTRIB")
 _SHORT = {"piece": "piece name", "qty": "quantity"}  # as some exporters write
 _CHORD_MM = 0.001  # by which a chord may leave its curve
 _CUBICS = 16  # in an arc
+_MOST_CHORDS = 1024  # between two knots of a spline
+_FRAME = 16  # flag of a vertex of the frame of a fitted polyline, which is no part of the line
 _DEEPEST = 16  # blocks in blocks
 
 
@@ -162,14 +165,40 @@ def _points(entity: Any, chord: float) -> FloatArray:
     if kind == "LINE":
         points = [entity.dxf.start, entity.dxf.end]
     elif kind == "POLYLINE" and not entity.has_arc and entity.dxf.extrusion.z > 0:
-        points = [v.dxf.location for v in entity.vertices]
+        points = [v.dxf.location for v in entity.vertices if not v.dxf.flags & _FRAME]
         points += points[:1] if entity.is_closed else []
     elif kind in ("ARC", "CIRCLE", "ELLIPSE"):
         # Of as few cubics as the library would take, a circle is 0.03 % too large.
         points = list(ezdxf.path.make_path(entity, segments=_CUBICS).flattening(chord))
+    elif kind == "SPLINE" and not (curve := entity.construction_tool()).is_clamped:
+        return _unclamped(curve, chord)
     else:
         points = list(ezdxf.path.make_path(entity).flattening(chord))
     return np.array([(p.x, p.y, p.z) for p in points], dtype=np.float64).reshape(-1, 3)
+
+
+def _unclamped(curve: Any, chord: float) -> FloatArray:
+    """Return a spline as (k, 3) whose end knots are single, as those of periodic ones are.
+
+    Only between the knots of its degree from either end does it lie in its control points; the
+    library goes on to the last knots.
+    """
+    degree, knots = curve.degree, np.array(curve.knots())
+    weights = np.array(curve.weights() or np.ones(curve.count))[:, None]
+    control = np.array([tuple(p) for p in curve.control_points])
+    spline = BSpline(knots, np.hstack([weights * control, weights]), degree)
+    ends = np.unique(knots[degree : curve.count + 1])
+    count = 4
+    while True:
+        share = np.linspace(0.0, 1.0, count, endpoint=False)
+        t = (ends[:-1, None] + share * np.diff(ends)[:, None]).ravel()
+        rows = spline(np.append(t, ends[-1]))
+        points = np.asarray(rows[:, :3] / rows[:, 3:])
+        off = points[1:-1:2] - 0.5 * (points[:-2:2] + points[2::2])
+        # Half the step leaves a quarter of this.
+        if np.linalg.norm(off, axis=1).max() < 4.0 * chord or count >= _MOST_CHORDS:
+            return points
+        count *= 2
 
 
 def _moved_point(place: Any, scale: float, matrix: FloatArray | None) -> tuple[FloatArray, float]:

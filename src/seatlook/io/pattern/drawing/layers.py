@@ -22,7 +22,16 @@ UNREAD = {
 }  # fmt: skip
 
 _NAMES = {
-    BOUNDARY: ("boundary", "cut", "cutline", "cuttingline", "outline", "contour", "perimeter"),
+    BOUNDARY: (
+        "boundary",
+        "pieceboundary",
+        "cut",
+        "cutline",
+        "cuttingline",
+        "outline",
+        "contour",
+        "perimeter",
+    ),
     SEW: ("sew", "sewline", "sewing", "sewingline", "seam", "seamline", "stitch", "stitchline"),
     NOTCH: ("notch", "notches"),
     GRAIN: ("grain", "grainline"),
@@ -43,10 +52,13 @@ def meaning(layer: str) -> str:
 
     Examples
     --------
-    >>> [meaning(name) for name in ("1", "01", "Cut_Line", "SEW", "Defpoints")]
-    ['1', '1', '1', '14', 'Defpoints']
+    >>> [meaning(name) for name in ("1", "01", "Layer 1", "Cut_Line", "SEW", "Defpoints")]
+    ['1', '1', '1', '1', '14', 'Defpoints']
     """
     if layer.isascii() and layer.isdigit():
         return layer.lstrip("0") or "0"
     letters = "".join(character for character in layer.casefold() if character.isalnum())
+    number = letters.removeprefix("layer")
+    if number != letters and number.isascii() and number.isdigit():
+        return number.lstrip("0") or "0"
     return _BY_NAME.get(letters, layer)

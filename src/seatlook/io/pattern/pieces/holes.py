@@ -10,6 +10,7 @@ from seatlook.errors import InputError
 from seatlook.io.pattern.drawing.layers import BOUNDARY, CUT_OUT
 from seatlook.io.pattern.pieces.join import GAP_MM, Chain
 from seatlook.io.pattern.pieces.outline import closed_outline
+from seatlook.io.pattern.pieces.sewline import parallel_inside
 from seatlook.model import FloatArray
 
 
@@ -58,6 +59,38 @@ def cut_outs(
             expected="cut-outs inside the sew line and apart from each other",
         )
     return holes
+
+
+def take_sew_lines(
+    outline: FloatArray | None, groups: Sequence[list[Chain]], sew: Sequence[Chain]
+) -> list[Chain]:
+    """Put in the place of cut-outs the sew lines that run round them; return the other sew lines.
+
+    Parameters
+    ----------
+    outline : (n, 2) of the boundary, where it is one line
+    groups : cut-outs as drawn; one may be in several groups
+    """
+    rest = []
+    for line in sew:
+        count = 0
+        for group in groups:
+            for k, chain in enumerate(group):
+                if _runs_round(line, chain, outline):
+                    group[k] = line
+                    count += 1
+        if not count:
+            rest.append(line)
+    return rest
+
+
+def _runs_round(line: Chain, cut_out: Chain, outline: FloatArray | None) -> bool:
+    """Whether a line is parallel to a cut-out round it, and closer to it than to the outline."""
+    if not line.closed or parallel_inside(line.points, [cut_out]) is None:
+        return False
+    ring = shapely.LinearRing(line.points)
+    inner = ring.hausdorff_distance(shapely.LinearRing(cut_out.points))
+    return outline is None or bool(inner < ring.hausdorff_distance(shapely.LinearRing(outline)))
 
 
 def _same(one: shapely.Polygon, other: shapely.Polygon) -> bool:

@@ -27,7 +27,7 @@ from seatlook.io.pattern.drawing.layers import (
 )
 from seatlook.io.pattern.pieces.boundary import outermost, sort_boundary, take_sew_line
 from seatlook.io.pattern.pieces.cuts import DEEPEST_SLIT, with_cuts
-from seatlook.io.pattern.pieces.holes import cut_outs
+from seatlook.io.pattern.pieces.holes import cut_outs, take_sew_lines
 from seatlook.io.pattern.pieces.join import MEETING_MM, Chain, join, join_outline
 from seatlook.io.pattern.pieces.outline import (
     closed_outline,
@@ -104,6 +104,10 @@ class Piece:
             When the outline is open, crosses itself or a cut-out, or is too small or too large.
         """
         sorted_out = sort_boundary(self.boundary, DEEPEST_SLIT * smallest_notch, self.left)
+        rings = [c.points for c in sorted_out.outline if c.closed and len(c.points) > 2]
+        self.sew = take_sew_lines(
+            rings[0] if len(rings) == 1 else None, (sorted_out.inner, self.cut_outs), self.sew
+        )
         self._find_sew_line(sorted_out.outline, sorted_out.inner)
         cut, outline = self._outlines(sorted_out.outline, smallest_notch)
         _check_size(self.name, cut.points, self.notes)
