@@ -7,6 +7,8 @@ import sys
 
 import pytest
 
+from support.commands import heeded
+
 # The signal comes while the module's own code, in C, imports others.
 WHILE_LOADING = """
 import os, signal, sys
@@ -59,7 +61,12 @@ except KeyboardInterrupt:
 
 def run(code: str) -> str:
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=120
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+        preexec_fn=heeded,
     )
     assert done.stderr == ""
     assert done.returncode == 0

@@ -12,6 +12,7 @@ import time
 import pytest
 
 from seatlook.cli import app, run
+from support.commands import heeded
 
 COMMANDS = [name for name in app if not name.startswith("-")]
 
@@ -166,8 +167,7 @@ def test_an_interrupted_command_ends_with_130_and_leaves_nothing_half_written(tm
         [sys.executable, "-m", "seatlook", "demo", "--out", str(tmp_path / "demo")],
         stderr=subprocess.PIPE,
         text=True,
-        # A shell's background job passes an ignored interrupt on to its children.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        preexec_fn=heeded,
     )
     errors = ""
     try:

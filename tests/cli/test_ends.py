@@ -11,6 +11,7 @@ import pytest
 
 from seatlook.cli import run
 from seatlook.errors import SolverError
+from support.commands import heeded
 
 pytestmark = pytest.mark.first
 
@@ -24,11 +25,6 @@ sys.argv = ["seatlook", "check", "a.toml"]
 __main__.main()
 """
 INTERRUPTED = "interrupted; no file was left half written\n"
-
-
-def heeded():
-    """A shell's background job passes an ignored interrupt on to its children."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def ended(setup, number, **options):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -19,6 +20,11 @@ ctypes.CDLL = Hidden
 from seatlook.cli import run
 sys.exit(run(sys.argv[1:]))
 """
+
+
+def heeded() -> None:
+    """Undo what a shell's background job passes on to its children: an ignored interrupt."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def seatlook(*words: str, cwd: Path, **environment: str) -> subprocess.CompletedProcess[str]:

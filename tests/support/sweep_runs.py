@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -15,6 +14,7 @@ from typing import Any
 
 from seatlook.io.sweep import read_sweep
 from seatlook.sweeps.cell import Cell, plan
+from support.commands import heeded
 from support.scene_files import write_two_panels
 
 SEEDS = 'schema = 1\nscene = "scene.toml"\n[axis]\n"mesh.seed" = [{}]\n'
@@ -94,8 +94,7 @@ def start_sweep(folder: Path, *words: str) -> subprocess.Popen[str]:
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-        # A shell's background job passes an ignored interrupt on to its children.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        preexec_fn=heeded,
     )
 
 

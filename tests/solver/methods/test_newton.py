@@ -4,7 +4,7 @@ from scipy.sparse import csc_array
 
 from seatlook.solver.element.elastic import ElasticSheet
 from seatlook.solver.element.loads import DeadLoad, Pressure
-from seatlook.solver.methods.newton import Potential, factorise, newton
+from seatlook.solver.methods.newton import Potential, factorise, line_search, newton
 from support import fabrics, meshes
 
 
@@ -108,3 +108,27 @@ def test_pressure_on_inner_vertices_is_pressure_times_their_area():
     expected = 5.0 * sheet.mass[inner] / 0.3
     np.testing.assert_allclose(-gradient[inner, 2], expected, rtol=1e-12)
     np.testing.assert_allclose(gradient[inner, :2], 0.0, atol=1e-15)
+
+
+class Curved:
+    """1 + c z^2 / 2, so high that what it changes drowns in the rounding of the sum."""
+
+    def __init__(self, curvature):
+        self.curvature = curvature
+
+    def value(self, x):
+        return 1.0 + 2.0**-52 * (x[0, 2] != 1e-9), self.curvature * x * [0.0, 0.0, 1.0]
+
+    def rounding(self, x):
+        return 2.0**-51
+
+
+@pytest.mark.parametrize(("curvature", "ends"), [(-1e-3, 1.1e-8), (1e-3, -2.5e-10)])
+def test_line_search_knows_ridge_and_valley_within_rounding(curvature, ends):
+    """A ridge is left by the whole step; in a valley the step ends near the bottom."""
+    x = np.array([[0.0, 0.0, 1e-9]])
+    step = np.array([[0.0, 0.0, -np.sign(curvature) * 1e-8]])
+    potential = Curved(curvature)
+    point = line_search(potential, (x, *potential.value(x)), step, np.inf)
+    assert point is not None
+    assert point[0][0, 2] == pytest.approx(ends)

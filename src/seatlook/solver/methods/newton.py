@@ -174,7 +174,8 @@ def line_search(
 ) -> tuple[FloatArray, float, FloatArray] | None:
     """Shorten ``step`` until the potential falls enough (Armijo); None if it never does.
 
-    Where the fall drowns in rounding, a slope that has flattened tells the same.
+    Where the fall drowns in rounding, a slope that has flattened tells the same; so does one that
+    leads down all the way, as at the top of a ridge.
     """
     x, energy, gradient = at
     slope = float((gradient * step).sum())
@@ -186,7 +187,7 @@ def line_search(
         value, fresh = potential.value(trial)
         if value <= energy + _ARMIJO * share * slope:
             return trial, value, fresh
-        if value <= energy + noise and abs((fresh * step).sum()) <= 0.5 * abs(slope):
+        if value <= energy + noise and float((fresh * step).sum()) <= -0.5 * slope:
             return trial, value, fresh
         share *= 0.5
     return None
