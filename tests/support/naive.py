@@ -104,3 +104,20 @@ def morley_matrix(X, edges, area, stiffness):
     rows = curvature_rows(np.concatenate([X, np.zeros((e, 2))]), edges, turns, area)
     K = np.einsum("t,tin,tij,tjm->nm", area, rows, stiffness, rows, optimize=True)
     return K[:n, :n] - K[:n, n:] @ np.linalg.solve(K[n:, n:], K[n:, :n])
+
+
+def shell_bending(rows, natural, x, sheet, stiffness, share=0.4):
+    """Energy of (x,ij - b n) and of its jumps, triangle by triangle and edge by edge."""
+    change = np.empty((len(rows), 3, 3))
+    for t, (a, b, c) in enumerate(x[sheet.faces]):
+        normal = np.cross(b - a, c - a)
+        change[t] = rows[t] @ x - np.outer(natural[t], normal / np.linalg.norm(normal))
+    energy = 0.5 * np.einsum("t,tci,tcd,tdi", sheet.area, change, stiffness, change)
+    inner = sheet.edges.faces[:, 1] >= 0
+    sides = inner[sheet.edges.of_face].sum(axis=1)
+    for first, second in sheet.edges.faces[inner]:
+        weight = share * (sheet.area[first] / sides[first] + sheet.area[second] / sides[second])
+        jump = change[first] - change[second]
+        mean = 0.5 * (stiffness[first] + stiffness[second])
+        energy += 0.5 * weight * np.einsum("ci,cd,di", jump, mean, jump)
+    return energy

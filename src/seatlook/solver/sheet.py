@@ -25,18 +25,29 @@ BoolArray = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
-    """A flat sheet.
+    """A sheet that was cut flat, or a shell.
 
     Parameters
     ----------
     rest : (n, 2) float64 [m]     flat, warp along axis 0
     faces : (m, 3) int64          counter-clockwise
     fabric : what it is made of
+    natural : (n, 3) float64 [m]  shape in space in which it is free of stress; the flat sheet if
+        not given. ``rest`` is a map of that shape: true to length where the shape can be unrolled
+        (a cylinder, a cone), else any smooth map that keeps angles nearly; stiffness, mass and
+        strains are those of the shape.
     """
 
     rest: FloatArray
     faces: IntArray
     fabric: Fabric
+    natural: FloatArray | None = None
+
+    def at_rest(self) -> FloatArray:
+        """Positions (n, 3) [m] without stress."""
+        if self.natural is not None:
+            return np.array(self.natural, dtype=np.float64, order="C")
+        return np.pad(np.asarray(self.rest, dtype=np.float64), ((0, 0), (0, 1)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -47,12 +58,15 @@ class Support:
     ----------
     fixed : (n,) or (n, 3) bool      vertices, or single components, that are held
     clamped : (n,) bool              fixed vertices between which free edges keep their direction
+    guided : (n,) bool               the same, of vertices that may move: with the component across
+        it in ``fixed``, an edge in a plane of symmetry
     prescribed : (n, 3) float64 [m]  where fixed components are taken to
     foundation : further energies that carry the sheet
     """
 
     fixed: BoolArray | None = None
     clamped: BoolArray | None = None
+    guided: BoolArray | None = None
     prescribed: FloatArray | None = None
     foundation: Sequence[Energy] = ()
 
@@ -76,6 +90,21 @@ class Support:
                 )
             held |= mask if mask.ndim == 2 else mask[:, None]
         return held
+
+    def directed(self, count: int) -> BoolArray | None:
+        """Return the vertices (count,) between which free edges keep their direction, if any.
+
+        Raises
+        ------
+        InputError   a mask of another shape
+        """
+        masks = [mask for mask in (self.clamped, self.guided) if mask is not None]
+        for mask in masks:
+            if np.asarray(mask).dtype != bool or np.shape(mask) != (count,):
+                raise InputError.single(
+                    "clamped, guided", got=str(np.shape(mask)), expected=f"bool ({count},)"
+                )
+        return np.any(masks, axis=0) if masks else None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -147,7 +176,7 @@ def solve_sheet(
     Parameters
     ----------
     start : (n, 3) float64 [m], or an earlier solution of the sheet, with the history of its strains
-        where the fabric does not unload as it was loaded; the flat sheet if not given
+        where the fabric does not unload as it was loaded; the sheet at rest if not given
     strict : raise instead of returning what has not converged
 
     Raises
@@ -175,7 +204,13 @@ def solve_sheet(
     held = support.held(len(first))
     panel = np.zeros(len(sheet.faces), dtype=np.int64)
     elastic = ElasticSheet(
-        sheet.rest, sheet.faces, panel, [sheet.fabric], clamped=support.clamped, positions=first
+        sheet.rest,
+        sheet.faces,
+        panel,
+        [sheet.fabric],
+        clamped=support.directed(len(first)),
+        positions=first,
+        natural=sheet.natural,
     )
     if peaks is not None:
         elastic.membrane.remember(peaks)
@@ -212,7 +247,7 @@ def _start(
 ) -> tuple[FloatArray, FloatArray | None]:
     """Positions (n, 3) in which the search starts, and the largest strains before."""
     if start is None:
-        return np.pad(np.asarray(sheet.rest, dtype=np.float64), ((0, 0), (0, 1))), None
+        return sheet.at_rest(), None
     if isinstance(start, SheetSolution):
         return start.positions.copy(), start.peaks
     return np.array(start, dtype=np.float64, order="C"), None

@@ -37,7 +37,7 @@ class Bending:
         self, edges: Edges, curvature: Curvature, area: FloatArray, stiffness: FloatArray
     ) -> None:
         count = len(curvature.reference)
-        jump = _jump_weights(edges, area)
+        jump = jump_weights(edges, area)
         moments = kernels.moments(
             count, edges.of_face, edges.faces, area, stiffness, jump, *curvature.rows
         )
@@ -78,7 +78,7 @@ class Bending:
         return csc_array(kron(self._matrix, eye_array(3)))
 
 
-def _jump_weights(edges: Edges, area: FloatArray) -> FloatArray:
+def jump_weights(edges: Edges, area: FloatArray) -> FloatArray:
     """Area (e,) [m2] that the jump of the curvature across every edge stands for, 0 at the rim."""
     # Near the rim two edges, or one, see all that the triangle misses.
     share = area / np.maximum((~edges.free)[edges.of_face].sum(axis=1), 1)

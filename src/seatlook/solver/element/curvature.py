@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -102,21 +102,30 @@ def recover_curvature(
     scale = edges.sign * edges.length[edges.of_face] / area[:, None]
     along = scale[:, None] * np.moveaxis(_squares(edges.normal)[edges.of_face], 2, 1)
     offset = np.asarray(along @ slopes[edges.of_face])
-    loose = edges.free & ~held
-    if sewn is not None:
-        loose[sewn] = False
-    for t in np.flatnonzero(loose[edges.of_face].any(axis=1)):
-        normal = edges.normal[edges.of_face[t, loose[edges.of_face[t]]]]
-        project = _released(normal, stiffness[t])
-        weights[start[t] : start[t + 1]] = weights[start[t] : start[t + 1]] @ project.T
-        offset[t] = project @ offset[t]
-    return Curvature(
+    curvature = Curvature(
         start=start,
         nodes=nodes,
         weights=weights,
         offset=offset,
         reference=np.zeros((count, 3)) if clamps is None else clamps.positions,
     )
+    loose = edges.free & ~held
+    if sewn is not None:
+        loose[sewn] = False
+    return released(curvature, edges, stiffness, loose)
+
+
+def released(
+    curvature: Curvature, edges: Edges, stiffness: FloatArray, loose: npt.NDArray[np.bool_]
+) -> Curvature:
+    """``curvature`` with the rotation of the ``loose`` (e,) edges left to their triangles."""
+    start, weights, offset = curvature.start, curvature.weights.copy(), curvature.offset.copy()
+    for t in np.flatnonzero(loose[edges.of_face].any(axis=1)):
+        normal = edges.normal[edges.of_face[t, loose[edges.of_face[t]]]]
+        project = _released(normal, stiffness[t])
+        weights[start[t] : start[t + 1]] = weights[start[t] : start[t + 1]] @ project.T
+        offset[t] = project @ offset[t]
+    return replace(curvature, weights=weights, offset=offset)
 
 
 def _squares(normal: FloatArray) -> FloatArray:

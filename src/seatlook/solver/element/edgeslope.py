@@ -140,6 +140,16 @@ def tangent_matrix(count: int, edges: Edges) -> csr_array:
     return csr_array((values, edges.ends.ravel(), 2 * np.arange(e + 1)), shape=(e, count))
 
 
+def natural_strains(edges: Edges) -> FloatArray:
+    """Matrices (m, 3, 3) from the strains of a triangle's edges to (E11, E22, 2 E12)."""
+    t0, t1 = -edges.normal[edges.of_face, 1], edges.normal[edges.of_face, 0]
+    # Row k of the inverse pairs the other two directions: a x b over a . (b x c).
+    along = np.stack([t0 * t0, t1 * t1, t0 * t1], axis=2)
+    out = np.stack([np.cross(along[:, k - 2], along[:, k - 1]) for k in range(3)], axis=2)
+    volume = (along[:, 0] * out[:, :, 0]).sum(axis=1)
+    return np.ascontiguousarray(out / volume[:, None, None])
+
+
 def _rings(count: int, edges: Edges) -> tuple[IntArray, IntArray]:
     """Neighbours of every vertex, compressed."""
     both = np.concatenate([edges.ends, edges.ends[:, ::-1]])

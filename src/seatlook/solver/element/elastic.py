@@ -6,15 +6,17 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csc_array
+from scipy.sparse import csc_array, csr_array
 
 from seatlook.errors import InputError
 from seatlook.model import Fabric, FloatArray, Hem, IntArray
 from seatlook.solver.element.bending import Bending
-from seatlook.solver.element.curvature import Clamps, recover_curvature
-from seatlook.solver.element.edgeslope import areas, edges_of, slope_rows
+from seatlook.solver.element.curvature import Clamps, Curvature, recover_curvature, released
+from seatlook.solver.element.edgeslope import Rows, areas, edges_of, slope_rows
 from seatlook.solver.element.hem import Folds
 from seatlook.solver.element.membrane import Membrane
+from seatlook.solver.element.natural import NaturalShape, natural_shape
+from seatlook.solver.element.shell_bending import ShellBending
 from seatlook.solver.energy import Energy
 
 BoolArray = npt.NDArray[np.bool_]
@@ -30,7 +32,9 @@ class ElasticSheet:
     panel : (m,) int64            index into ``fabrics``
     fabrics : one Fabric for each panel
     clamped : (n,) bool           a free edge between two clamped vertices keeps the direction
-        across it that its triangle has in ``positions``, (n, 3) [m], the flat sheet if not given
+        across it that its triangle has in ``positions``, (n, 3) [m], the flat sheet if not given;
+        with a natural shape, the one that the shape has there
+    natural : (n, 3) float64 [m]  shape in space without stress; the flat sheet if not given
     hem : second layer and folds along the seams
 
     Raises
@@ -48,6 +52,7 @@ class ElasticSheet:
         *,
         clamped: BoolArray | None = None,
         positions: FloatArray | None = None,
+        natural: FloatArray | None = None,
         hem: Hem | None = None,
     ) -> None:
         rest = np.array(rest, dtype=np.float64, order="C")
@@ -59,8 +64,7 @@ class ElasticSheet:
                 got=f"{len(panel)} entries for {len(faces)} faces and {len(fabrics)} fabrics",
                 expected="one fabric for every face",
             )
-        self.area = areas(rest, faces)
-        self.faces = faces
+        self.faces, self.rest = faces, rest
         self.edges = edges_of(rest, faces)
         self._panel, self._fabrics = panel, tuple(fabrics)
         self.thickness = np.array([f.thickness for f in fabrics])[panel]
@@ -68,28 +72,32 @@ class ElasticSheet:
         stiffness = np.stack([f.bending_matrix for f in fabrics])[panel]
         if hem is not None:
             density, stiffness = density + hem.density, stiffness + hem.bending
+        self.bending_stiffness = stiffness
+        rows = slope_rows(rest, faces, self.edges)
+        self.folds = None if hem is None else Folds(hem, self.edges, rows)
+        self.area = areas(rest, faces)
+        self._shape: NaturalShape | None = None
+        if natural is None:
+            clamps = self._clamps(clamped, positions)
+            self._curvature = self._recovered(rows, stiffness, clamps)
+        else:
+            stiffness = self._bend(natural, rows, clamped)
         self.mass = np.bincount(
             faces.ravel(), np.repeat(density * self.area / 3.0, 3), minlength=len(rest)
         )
-        rows = slope_rows(rest, faces, self.edges)
-        self.folds = None if hem is None else Folds(hem, self.edges, rows)
-        self._curvature = recover_curvature(
-            len(rest),
-            self.edges,
-            rows,
-            self.area,
-            stiffness,
-            self._clamps(rest, clamped, positions),
-            None if self.folds is None else self.folds.edges,
+        self.membrane = Membrane(
+            self.edges, self._curvature, self.area, panel, self._fabrics, self._shape
         )
-        self.membrane = Membrane(self.edges, self._curvature, self.area, panel, self._fabrics)
-        self.bending = Bending(self.edges, self._curvature, self.area, stiffness)
+        parts = (self.edges, self._curvature, self.area)
+        self.bending = (
+            Bending(*parts, stiffness)
+            if self._shape is None
+            else ShellBending(*parts, stiffness, self._shape)
+        )
         self._sewn: csc_array | None = None
         if hem is not None and self.folds is not None:
-            below = stiffness * (hem.density > 0.0)[:, None, None]
-            doubled = Bending(self.edges, self._curvature, self.area, below)
+            doubled = Bending(*parts, stiffness * (hem.density > 0.0)[:, None, None])
             self._sewn = csc_array(doubled.stiffness() + self.folds.matrix())
-        self.rest, self.bending_stiffness = rest, stiffness
 
     @property
     def energies(self) -> tuple[Energy, ...]:
@@ -116,12 +124,18 @@ class ElasticSheet:
         return self.membrane.stiffness()
 
     def curvatures(self, x: FloatArray) -> FloatArray:
-        """Return kappa = -(n . x,ij) of every triangle, (m, 2, 2) [1/m]; a crown is positive."""
+        """Return kappa = -(n . x,ij) of every triangle, (m, 2, 2) [1/m]; a crown is positive.
+
+        Of a sheet with a natural shape, how much more it is bent than that.
+        """
         second = self._curvature.at(x)
         p = x[self.faces]
         normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
         normal /= np.linalg.norm(normal, axis=1)[:, None]
-        return _tensors(-np.einsum("tki,ti->tk", second, normal))
+        change = np.einsum("tki,ti->tk", second, normal)
+        if isinstance(self.bending, ShellBending):
+            change = np.einsum("tck,tk->tc", self.bending.measure, change - self.bending.natural)
+        return _tensors(-change)
 
     def recovered_curvatures(self, x: FloatArray) -> FloatArray:
         """Return smoother kappa of every triangle, (m, 2, 2) [1/m].
@@ -154,16 +168,55 @@ class ElasticSheet:
         around = np.maximum(np.bincount(corners, weight, minlength=n), np.finfo(float).tiny)
         return np.asarray((total / around[:, None]).reshape(-1, 2, 2))
 
-    def _clamps(
-        self, rest: FloatArray, clamped: BoolArray | None, positions: FloatArray | None
-    ) -> Clamps | None:
+    def _recovered(
+        self, rows: Rows, stiffness: FloatArray, clamps: Clamps | None, *, loose: bool = True
+    ) -> Curvature:
+        """Second derivatives; free edges that carry no moment turn as they like if ``loose``."""
+        sewn = None if self.folds is None else self.folds.edges
+        return recover_curvature(
+            len(self.rest),
+            self.edges,
+            rows,
+            self.area,
+            stiffness,
+            clamps,
+            sewn if loose else np.flatnonzero(self.edges.free),
+        )
+
+    def _bend(self, natural: FloatArray, rows: Rows, clamped: BoolArray | None) -> FloatArray:
+        """Take a natural shape; return the bending matrices (m, 3, 3) for the flat mesh."""
+        plain = self._recovered(rows, self.bending_stiffness, None, loose=False)
+        shape = natural_shape(natural, self.rest, self.faces, self.edges, plain)
+        clamps = None if clamped is None else self._natural_clamps(clamped, rows, shape)
+        within = shape.covariant(self._recovered(rows, self.bending_stiffness, clamps, loose=False))
+        measure = shape.measure
+        stiffness = np.swapaxes(measure, 1, 2) @ self.bending_stiffness @ measure
+        loose = self.edges.free.copy()
+        if clamps is not None:
+            loose[clamps.edges] = False
+        self._curvature = released(within, self.edges, stiffness, loose)
+        self._shape, self.area = shape, self.area * shape.stretch
+        return np.asarray(stiffness)
+
+    def _held(self, clamped: BoolArray) -> IntArray:
+        """Free edges between clamped vertices."""
+        return np.flatnonzero(self.edges.free & clamped[self.edges.ends].all(axis=1))
+
+    def _natural_clamps(self, clamped: BoolArray, rows: Rows, shape: NaturalShape) -> Clamps:
+        """Free edges between clamped vertices, with the slope of the natural shape."""
+        held = self._held(clamped)
+        index = (rows.weights, rows.nodes, rows.start)
+        slope = csr_array(index, shape=(len(self.edges.ends), len(self.rest)))
+        return Clamps(held, np.asarray(slope @ shape.positions)[held], shape.positions)
+
+    def _clamps(self, clamped: BoolArray | None, positions: FloatArray | None) -> Clamps | None:
         """Free edges between clamped vertices, with the slope of their own plane triangle."""
         if clamped is None:
             return None
-        held = np.flatnonzero(self.edges.free & clamped[self.edges.ends].all(axis=1))
-        x = np.pad(rest, ((0, 0), (0, 1))) if positions is None else np.asarray(positions)
+        held = self._held(clamped)
+        x = np.pad(self.rest, ((0, 0), (0, 1))) if positions is None else np.asarray(positions)
         corners = self.faces[self.edges.faces[held, 0]]
-        plane = np.linalg.inv(np.diff(rest[corners], axis=1))
+        plane = np.linalg.inv(np.diff(self.rest[corners], axis=1))
         gradient = np.einsum("kia,kac->kic", plane, np.diff(x[corners], axis=1))
         slopes = np.einsum("ki,kic->kc", self.edges.normal[held], gradient)
         return Clamps(edges=held, slopes=slopes, positions=x)

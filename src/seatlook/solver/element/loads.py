@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from seatlook.model import FloatArray, IntArray
+from seatlook.solver.element.turning import cross_matrix
 
 
 class DeadLoad:
@@ -65,7 +66,7 @@ class Pressure:
             return csc_array((x.size, x.size))
         rows, columns, values = [], [], []
         for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-            block = -self.pressure / 6.0 * _cross_matrix(x[self._faces[:, k]])
+            block = -self.pressure / 6.0 * cross_matrix(x[self._faces[:, k]])
             for p, q, sign in ((i, j, -1.0), (j, i, 1.0)):
                 r = 3 * self._faces[:, p, None, None] + np.arange(3)[:, None]
                 s = 3 * self._faces[:, q, None, None] + np.arange(3)
@@ -75,10 +76,3 @@ class Pressure:
                 values.append((sign * block).ravel())
         index = (np.concatenate(rows), np.concatenate(columns))
         return csc_array((np.concatenate(values), index), shape=(x.size, x.size))
-
-
-def _cross_matrix(a: FloatArray) -> FloatArray:
-    """Matrices [a] with [a] b = a x b, (m, 3, 3)."""
-    zero = np.zeros(len(a))
-    x, y, z = a.T
-    return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)

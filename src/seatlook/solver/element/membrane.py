@@ -11,7 +11,8 @@ from scipy.sparse import bsr_array, csc_array, csr_array, eye_array, kron
 from seatlook.model import Fabric, FloatArray, IntArray
 from seatlook.solver.element.constitutive import constitutive_tables, typical_stiffness
 from seatlook.solver.element.curvature import Curvature
-from seatlook.solver.element.edgeslope import Edges, tangent_matrix
+from seatlook.solver.element.edgeslope import Edges, natural_strains, tangent_matrix
+from seatlook.solver.element.natural import NaturalShape
 from seatlook.solver.element.unloading import Unloading
 from seatlook.solver.element.yarn_friction import YarnFriction
 from seatlook.solver.kernels import membrane as kernels
@@ -46,6 +47,7 @@ class Membrane:
     curvature : from ``recover_curvature``
     area : (m,) float64 [m2]
     fabric : (m,) int64                   index into ``fabrics``
+    shape : in which there is no strain; the flat mesh if not given
     """
 
     def __init__(
@@ -55,9 +57,12 @@ class Membrane:
         area: FloatArray,
         fabric: IntArray,
         fabrics: Sequence[Fabric],
+        shape: NaturalShape | None = None,
     ) -> None:
         self._edges, self._area, self._fabric = edges, area, fabric
         self._natural = natural_strains(edges)
+        if shape is not None:
+            self._natural = np.ascontiguousarray(shape.measure @ self._natural)
         self._count = count = len(curvature.reference)
         self._rows: tuple[IntArray, IntArray, FloatArray] = along_edges(
             count, edges.faces, edges.normal, *curvature.rows
@@ -81,6 +86,10 @@ class Membrane:
         self._E, self._tension = np.empty((len(area), 3)), np.empty((len(area), 3))
         self._pairs, self._share = _along_rims(edges, area)
         self._move = np.empty((len(self._pairs), 3))
+        self._strain_at_rest: FloatArray | None = None
+        if shape is not None:
+            self._deform(shape.positions)
+            self._strain_at_rest = self._edge_strain.copy()
 
     @property
     def peaks(self) -> FloatArray | None:
@@ -250,6 +259,8 @@ class Membrane:
         kernels.edge_strains(
             x, edges.ends, edges.length, *self._rows, self._bow_offset, self._bow, self._edge_strain
         )
+        if self._strain_at_rest is not None:
+            self._edge_strain -= self._strain_at_rest
         kernels.strains(self._edge_strain, edges.of_face, self._natural, self._E)
         kernels.exchange(self._E, self._pairs, self._share, self._move)
 
@@ -264,16 +275,6 @@ class Membrane:
         pull = np.bincount(of_face, share.ravel(), minlength=len(self._edges.ends))
         along = tangent_matrix(count, self._edges)
         return csc_array(along.T @ along.multiply(pull[:, None]))
-
-
-def natural_strains(edges: Edges) -> FloatArray:
-    """Matrices (m, 3, 3) from the strains of a triangle's edges to (E11, E22, 2 E12)."""
-    t0, t1 = -edges.normal[edges.of_face, 1], edges.normal[edges.of_face, 0]
-    # Row k of the inverse pairs the other two directions: a x b over a . (b x c).
-    along = np.stack([t0 * t0, t1 * t1, t0 * t1], axis=2)
-    out = np.stack([np.cross(along[:, k - 2], along[:, k - 1]) for k in range(3)], axis=2)
-    volume = (along[:, 0] * out[:, :, 0]).sum(axis=1)
-    return np.ascontiguousarray(out / volume[:, None, None])
 
 
 def _along_rims(edges: Edges, area: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -21,6 +21,7 @@ BoolArray = npt.NDArray[np.bool_]
 # A negative pivot below this share of the largest one is rounding, not a mode.
 _ROUNDING = 1e-12
 _ARMIJO, _SHORTEST = 1e-4, 2.0**-30
+_NOISE = 16 * np.finfo(float).eps  # of a nodal force over stiffness times size
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +65,8 @@ class Potential:
     ) -> None:
         self.elastic, self.others, self.free = tuple(elastic), tuple(others), free
         self._index = np.flatnonzero(free)
+        parts = [matrix for term in elastic if (matrix := term.stiffness()) is not None]
+        self._stiffest = max((float(part.diagonal().max()) for part in parts), default=0.0)
 
     def value(self, x: FloatArray) -> tuple[float, FloatArray]:
         """Return the potential [J] and its gradient [N]."""
@@ -91,10 +94,15 @@ class Potential:
         return mean
 
     def residual(self, x: FloatArray, gradient: FloatArray) -> float:
-        """Return the largest force out of balance over the mean elastic nodal force."""
+        """Return the largest force out of balance over the mean elastic nodal force.
+
+        0 where both are no more than rounding: a sheet at rest that nothing pulls.
+        """
         mean = self.force_scale(x)
         worst = float(np.linalg.norm(np.where(self.free, gradient, 0.0), axis=1).max())
-        return worst / mean if mean > 0.0 else (0.0 if worst == 0.0 else np.inf)
+        if max(mean, worst) <= _NOISE * self._stiffest * float(np.ptp(x, axis=0).max()):
+            return 0.0
+        return worst / mean if mean > 0.0 else np.inf
 
     def hessian(self, x: FloatArray, *, definite: bool) -> csc_array:
         """Second derivative over the free positions."""

@@ -1,0 +1,55 @@
+"""Shells that are curved at rest against Sze, Liu and Lo (2004), values printed (``-s``)."""
+
+import numpy as np
+import pytest
+
+from support.reference.shells import half_cylinder, hemisphere, pinched_cylinder, ring
+
+pytestmark = pytest.mark.validate
+
+
+@pytest.fixture
+def report(capsys):
+    def show(text):
+        with capsys.disabled():
+            print(f"\n    {text}", end="")
+
+    return show
+
+
+@pytest.mark.parametrize("kind", ["uns", "right", "sliver", "alt"])
+@pytest.mark.parametrize("thickness", [0.02, 0.005])
+def test_pinched_ring(kind, thickness, report):
+    edges = np.array([6, 12, 24, 48])
+    errors = np.array([ring(n, kind, thickness, load=1e-3 * 0.02 / thickness) for n in edges])
+    rates = -np.polyfit(np.log(edges[:3]), np.log(abs(errors[:3])), 1)[0]
+    report(f"{kind}, t {thickness}: {np.round(100 * errors, 3).tolist()} %, rates {rates.round(2)}")
+    assert (rates >= 1.5).all()
+    assert abs(errors[-1]).max() <= 2e-3
+
+
+@pytest.mark.parametrize("h", [0.12, 0.065])
+def test_half_cylinder(h, report):
+    sinks, solved = half_cylinder(h)
+    report(f"{len(solved.positions)} vertices: {sinks:.5f} of 1.71505, {sinks / 1.71505 - 1:+.4f}")
+    assert len(solved.positions) <= 1500
+    assert sinks == pytest.approx(1.71505, rel=0.01)
+
+
+@pytest.mark.parametrize(("kind", "rows"), [("uns", 36), ("right", 20), ("right", 36)])
+def test_hemisphere_with_a_hole(kind, rows, report):
+    move, solved = hemisphere(rows, kind)
+    errors = move / [8.178, 4.067] - 1
+    report(f"{kind}, {len(solved.positions)} vertices: {move.round(4)} of 8.178 and 4.067, "
+           f"{errors.round(4)}")  # fmt: skip
+    assert len(solved.positions) <= 1500
+    assert abs(errors).max() <= 0.01
+
+
+def test_pinched_cylinder_with_diaphragms(report):
+    move, solved = pinched_cylinder(3.7)
+    errors = move / [83.102, 34.272] - 1
+    report(f"{len(solved.positions)} vertices: {move.round(3)} of 83.102 and 34.272, "
+           f"{errors.round(4)}")  # fmt: skip
+    assert len(solved.positions) <= 1500
+    assert abs(errors).max() <= 0.01
