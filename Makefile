@@ -1,5 +1,5 @@
 # Every target sets up what it needs; once set up, that costs nothing.
-#   make demo       sew, hook, cover, judge and draw the demo seat; leaves out/demo/index.html
+#   make demo       sew, hook, cover, judge, draw and score the demo seat; leaves out/demo/index.html
 #   make test       the tests that take under 20 s each
 #   make validate   the long ones: convergence, fuzzing, path tracing
 #   make browser    the gallery page and the GLB in headless Chromium
@@ -25,8 +25,7 @@ export NUMBA_CACHE_DIR ?= $(CURDIR)/.numba_cache/$(shell find src -path "*/kerne
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.gl
-	$(BIN)/seatlook demo --out $(OUT) --no-score
-	@echo "how visible its wrinkles are: $(BIN)/seatlook evaluate $(OUT)/scene.toml --out $(OUT) --resume"
+	$(BIN)/seatlook demo --out $(OUT)
 
 test: $(VENV)/.gl $(VENV)/.dev
 	$(PYTEST) -n auto --dist loadfile --no-loadscope-reorder -m "not validate and not browser and not bench" $(TESTS)

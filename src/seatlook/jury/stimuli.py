@@ -154,7 +154,7 @@ def shown_cells(scene: Scene, view: View, *, name: str, seed: int) -> Iterator[S
     """Draw and score every texture of a scene under every rig, as seen by ``view``."""
     for rig in scene.rigs:
         for texture, looks in scene.textures.items():
-            sight = view.sight(looks, rig)
+            picture, reference = view.draw(looks, rig)
             label = f"{name}, {texture}, {rig.name}"
             yield Shown(
                 code=code_of(label, seed),
@@ -162,8 +162,8 @@ def shown_cells(scene: Scene, view: View, *, name: str, seed: int) -> Iterator[S
                 geometry=name,
                 texture=texture,
                 rig=rig.name,
-                picture=sight.picture,
-                measures=sight.measures,
+                picture=picture,
+                measures=view.compare(picture, reference, rig).measures,
             )
 
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatlook.model import Cover, FloatArray
+from seatlook.model import Cover
 from seatlook.visibility.observer import OBSERVER
 from seatlook.visibility.pixels import Region
+from seatlook.visibility.vwi import Map
 
 TOP = 0.001  # share of the pixels that is looked at
 CONCENTRATED = 0.3  # share of the energy in them above which no score is given
@@ -29,9 +30,9 @@ class Concentration:
     places: tuple[str, ...]
 
 
-def concentration(visibility: FloatArray, region: Region, cover: Cover) -> Concentration:
+def concentration(visibility: Map, region: Region, cover: Cover) -> Concentration:
     """Say what share of the energy of the map D (h, w) the most visible pixels of a region have."""
-    energy = visibility[region.mask] ** OBSERVER.pooling
+    energy = visibility[region.mask].astype(np.float64) ** OBSERVER.pooling
     count = max(1, round(TOP * energy.size))
     top = np.argpartition(energy, -count)[-count:]
     total, here = float(energy.sum()), energy[top]

@@ -10,7 +10,6 @@ import numpy as np
 
 from seatlook.errors import InputError
 from seatlook.model import Appearance, Camera, FloatArray, Rig, Solution, sun
-from seatlook.pbr import Image, Studio
 from seatlook.visibility.view import View, luminance
 
 # Heights of the ladder over that of the field; what looks higher than the last reads "above".
@@ -93,12 +92,11 @@ def amplitude_ladder(
         raise InputError.single("heights", got=rungs.tolist(), expected="rising from 0")
     rig = rig or reference_rig(view.camera)
     factors = rungs / height
-    smooth, seen = luminance(_draw(view.reference_studio, view, black, rig)), view.region_under(rig)
+    smooth, seen = _luminance(view, 0.0, black, rig), view.region_under(rig)
     values: list[float] = [0.0]
     zones: dict[str, list[float]] = {}
     for factor in factors[1:]:
-        studio = view.test_studio if factor == 1 else view.studio_of(amplified(view, float(factor)))
-        result = view.score(luminance(_draw(studio, view, black, rig)), smooth, seen)
+        result = view.score(_luminance(view, float(factor), black, rig), smooth, seen)
         values.append(result.vwi)
         for name, vwi in view.by_zone(result, seen)[0].items():
             zones.setdefault(name, [0.0]).append(vwi)
@@ -132,5 +130,10 @@ def peak_to_valley(view: View, zone: str | None = None) -> float:
     return float(height[order][min(high, len(order) - 1)] - height[order][low])
 
 
-def _draw(studio: Studio, view: View, looks: Appearance, rig: Rig) -> Image:
-    return studio.render(looks, rig=rig, camera=view.camera, quality=view.quality)
+def _luminance(view: View, factor: float, looks: Appearance, rig: Rig) -> FloatArray:
+    """Luminance (h, w) [cd/m2] of the cover with its wrinkles ``factor`` times as high."""
+    if factor in (0, 1):
+        studio = view.test_studio if factor else view.reference_studio
+    else:
+        studio = view.studio_of(amplified(view, factor))
+    return luminance(studio.render(looks, rig=rig, camera=view.camera, quality=view.quality))

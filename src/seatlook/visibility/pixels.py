@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 
 from seatlook.errors import InputError
-from seatlook.model import Camera, FloatArray, Rig, Solution
+from seatlook.model import Camera, Rig, Solution
 from seatlook.model.zones import FREE_EDGE
 from seatlook.pbr import Studio
 from seatlook.visibility.outline import outline_distance
@@ -24,6 +24,8 @@ _JUMP = 0.020
 _MOVED = 64
 
 Mask = npt.NDArray[np.bool_]
+Numbers = npt.NDArray[np.int32]
+Reals = npt.NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,22 +35,22 @@ class Region:
     Parameters
     ----------
     mask : (h, w) bool            zones that count, ``MARGIN`` away from seams, hems, silhouettes
-    face : (h, w) int64           face of the solution, -1 where the pixel shows none
-    zone : (h, w) int64           zone of that face, -1 outside the mask
-    area : (h, w) float64 [m2]    of the surface that the pixel shows, 0 where none
-    side : (h, w) float64 [m]     of the pixel, across the view at its depth; 0 where none
+    face : (h, w) int32           face of the solution, -1 where the pixel shows none
+    zone : (h, w) int32           zone of that face, -1 outside the mask
+    area : (h, w) float32 [m2]    of the surface that the pixel shows, 0 where none
+    side : (h, w) float32 [m]     of the pixel, across the view at its depth; 0 where none
     """
 
     mask: Mask
-    face: npt.NDArray[np.int64]
-    zone: npt.NDArray[np.int64]
-    area: FloatArray
-    side: FloatArray
+    face: Numbers
+    zone: Numbers
+    area: Reals
+    side: Reals
 
     def without(self, left_out: Mask) -> Region:
         """The same without some of its pixels (h, w)."""
         mask = self.mask & ~left_out
-        return replace(self, mask=mask, zone=np.where(mask, self.zone, -1))
+        return replace(self, mask=mask, zone=np.where(mask, self.zone, np.int32(-1)))
 
     @property
     def pixel(self) -> float:
@@ -79,8 +81,8 @@ def region(studio: Studio, camera: Camera, *, zones: tuple[str, ...] | None = No
         )
     face = solver_faces(studio, camera)
     cosine, area, depth = _pixels_on(studio.solution, camera, face)
-    side = depth * _pixel_tangent(camera)
-    zone = np.where(face >= 0, cover.zone[face], -1)
+    side = depth * np.float32(_pixel_tangent(camera))
+    zone = np.where(face >= 0, cover.zone.astype(np.int32)[face], np.int32(-1))
     inner = outline_distance(cover)[cover.faces].mean(axis=1) >= MARGIN
     mask = np.isin(zone, [names.index(name) for name in zones]) & inner[face]
     silhouette = (face < 0) | (cosine < GRAZING) | _steps(depth, _JUMP)
@@ -91,11 +93,12 @@ def region(studio: Studio, camera: Camera, *, zones: tuple[str, ...] | None = No
             got=f"no pixel of the zones, {1e3 * MARGIN:g} mm from seams and silhouettes",
             expected="a view of them",
         )
-    return Region(mask=mask, face=face, zone=np.where(mask, zone, -1), area=area, side=side)
+    zone = np.where(mask, zone, np.int32(-1))
+    return Region(mask=mask, face=face, zone=zone, area=area, side=side)
 
 
 def moving_shadows(
-    test: Studio, reference: Studio, rig: Rig, camera: Camera, quality: str, side: FloatArray
+    test: Studio, reference: Studio, rig: Rig, camera: Camera, quality: str, side: Reals
 ) -> Mask:
     """Pixels (h, w) beside an edge of light and shade that moves from one cover to the other.
 
@@ -116,22 +119,21 @@ def moving_shadows(
     return _beside(out, side)
 
 
-def solver_faces(studio: Studio, camera: Camera) -> npt.NDArray[np.int64]:
+def solver_faces(studio: Studio, camera: Camera) -> Numbers:
     """Face of the solution that each pixel shows, (h, w), -1 for foam and background."""
-    drawn = studio.faces(camera).astype(np.int64)
-    panels = studio.surface.faces
-    children = panels // len(studio.solution.cover.faces)
-    return np.where((drawn >= 0) & (drawn < panels), drawn // children, -1)
+    drawn, panels = studio.faces(camera), studio.surface.faces
+    children = np.int32(panels // len(studio.solution.cover.faces))
+    return np.where((drawn >= 0) & (drawn < panels), drawn // children, np.int32(-1))
 
 
-def _beside(edge: Mask, side: FloatArray) -> Mask:
+def _beside(edge: Mask, side: Reals) -> Mask:
     """Pixels (h, w) closer than ``MARGIN`` to those of an edge, as seen."""
     if not edge.any():
         return edge
     return np.asarray(distance_transform_edt(~edge) * side < MARGIN)
 
 
-def _steps(values: npt.NDArray[np.float64 | np.uint8], least: float) -> Mask:
+def _steps(values: npt.NDArray[np.float32 | np.uint8], least: float) -> Mask:
     """Pixels (h, w) whose value is more than ``least`` away from that of a neighbour."""
     out = np.zeros(values.shape, dtype=bool)
     for axis in (0, 1):
@@ -143,9 +145,7 @@ def _steps(values: npt.NDArray[np.float64 | np.uint8], least: float) -> Mask:
     return out
 
 
-def _pixels_on(
-    solution: Solution, camera: Camera, face: npt.NDArray[np.int64]
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _pixels_on(solution: Solution, camera: Camera, face: Numbers) -> tuple[Reals, Reals, Reals]:
     """Cosine between ray and face, area [m2] on it, and depth [m] of every pixel, each (h, w)."""
     p = solution.positions[solution.cover.faces]
     vector = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
@@ -156,7 +156,8 @@ def _pixels_on(
     depth = -ray @ (forward / np.linalg.norm(forward))
     # A pixel's square on a plane across the view; distance / depth turns it to the ray.
     area = (depth * _pixel_tangent(camera)) ** 2 * (depth / distance) / np.maximum(cosine, 1e-3)
-    cosine, area, depth = (np.where(face >= 0, value[face], 0.0) for value in (cosine, area, depth))
+    values = (value.astype(np.float32) for value in (cosine, area, depth))
+    cosine, area, depth = (np.where(face >= 0, value[face], np.float32(0)) for value in values)
     return cosine, area, depth
 
 

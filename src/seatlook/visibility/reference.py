@@ -33,7 +33,13 @@ GRAZING = 0.2
 _PASSES, _FAR_PASSES = 3, 8
 
 
-def smooth_reference(solution: Solution, camera: Camera, *, cutoff: float = CUTOFF) -> Solution:
+def smooth_reference(
+    solution: Solution,
+    camera: Camera,
+    *,
+    cutoff: float = CUTOFF,
+    crests: FloatArray | None = None,
+) -> Solution:
     """Take the waves shorter than ``cutoff`` out of the cover, along the rays of one camera.
 
     With a foam the *distance from its surface* is smoothed, so that crown, bolsters and trenches,
@@ -45,6 +51,7 @@ def smooth_reference(solution: Solution, camera: Camera, *, cutoff: float = CUTO
     Parameters
     ----------
     cutoff : float [m]
+    crests : (n,) [m]    the :func:`waves` of this cover over its foam, where they are known
 
     Returns
     -------
@@ -65,8 +72,8 @@ def smooth_reference(solution: Solution, camera: Camera, *, cutoff: float = CUTO
         step = off * _seen(-_dot(normal, ray))
         return replace(solution, positions=x + step[:, None] * ray)
     height, _ = field_of(cover.foam).at(x)
-    height = np.where(np.isfinite(height), height, 0.0)
-    target = height - _band(cover, height, cutoff)
+    target = np.where(np.isfinite(height), height, 0.0)
+    target = target - (_band(cover, target, cutoff) if crests is None else crests)
     return _moved(solution, cover.foam, camera, target, passes=_PASSES)
 
 

@@ -80,11 +80,11 @@ def score_scene(
         _zones_of(limit, scene, view)
     progress("score", what="null gate")
     null = null_gate(view, scene)
-    progress("score", what="grid")
-    grid = score_grid(view, scene.textures, scene.rigs, indices=indices)
+    # Before the grid, whose cells stay in memory.
     progress("score", what="amplitude ladder")
     ladder = amplitude_ladder(view, io.read_material(BLACK).appearance)
-    grid = grid.on_ladder(ladder)
+    progress("score", what="grid")
+    grid = score_grid(view, scene.textures, scene.rigs, indices=indices).on_ladder(ladder)
     resolved = bool(scored) and resolution(view.solution).resolved
     verdicts = tuple(
         Verdict(

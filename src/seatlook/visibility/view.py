@@ -73,7 +73,6 @@ class Sight:
     measures : the score beside its cross-checks
     peak : what of the score lies in few pixels, and where
     mask : (h, w) bool   the pixels that it is taken over
-    picture : the test picture, for the page
     """
 
     score: VisibilityScore
@@ -84,7 +83,6 @@ class Sight:
     measures: Measures
     peak: Concentration
     mask: Mask
-    picture: Image
 
 
 class View:
@@ -107,6 +105,7 @@ class View:
         cutoff: float = CUTOFF,
         sampling: Sampling = SAMPLING,
         element_size: float | None = None,
+        like: Studio | None = None,
     ) -> None:
         """Make the reference.
 
@@ -119,13 +118,14 @@ class View:
         sampling : coarser for a search
         element_size : float [m]   waves shorter than three elements are left out; that of the
             coarsest mesh where several covers are compared, None for the cover's own
+        like : of another shape of the same cover, which shares with a view that nobody else draws
         """
         self.solution, self.camera = solution, at_density(camera, sampling.pixels_per_degree)
         self.mode, self.cutoff, self.quality = mode, cutoff, sampling.quality
         self.element_size = element_size or solution.cover.element_size
         self.reference = self._reference()
         # The studio that pictures of this solution share.
-        self.test_studio = studio(solution)
+        self.test_studio = Studio(solution, like=like) if like else studio(solution)
         self.reference_studio = self.studio_of(self.reference)
         self.region: Region = region(self.test_studio, self.camera)
         self._under: tuple[Rig, Region] | None = None
@@ -155,7 +155,8 @@ class View:
     def _reference(self) -> Solution:
         if self.mode == "design":
             return design_reference(self.solution, self.camera)
-        return smooth_reference(self.solution, self.camera, cutoff=self.cutoff)
+        crests = None if self.solution.cover.foam is None else self.heights
+        return smooth_reference(self.solution, self.camera, cutoff=self.cutoff, crests=crests)
 
     def studio_of(self, shape: Solution) -> Studio:
         """Make a studio for another shape of the cover, as the mode asks."""
@@ -178,7 +179,12 @@ class View:
         looks : one appearance for all panels, one per panel, or None for the panels' own
         indices : of the solution, to split the score by cause
         """
-        picture, reference = self._draw(looks, rig)
+        return self.compare(*self.draw(looks, rig), rig, indices=indices)
+
+    def compare(
+        self, picture: Image, reference: Image, rig: Rig, *, indices: WrinkleMap | None = None
+    ) -> Sight:
+        """Score the difference of two pictures of :meth:`draw`."""
         pair, seen = (luminance(picture), luminance(reference)), self.region_under(rig)
         result = self.score(*pair, seen)
         vwi, contrast = self.by_zone(result, seen)
@@ -201,7 +207,6 @@ class View:
             ),
             peak=peak,
             mask=seen.mask,
-            picture=picture,
         )
 
     def by_zone(
@@ -218,7 +223,7 @@ class View:
 
     def vwi(self, looks: Looks, rig: Rig) -> float:
         """VWI alone, for searches."""
-        picture, reference = self._draw(looks, rig)
+        picture, reference = self.draw(looks, rig)
         return self.score(luminance(picture), luminance(reference), self.region_under(rig)).vwi
 
     def null_score(self, looks: Looks, rig: Rig, *, null: View | None = None) -> float:
@@ -246,7 +251,7 @@ class View:
         return vwi
 
     def without_wrinkles(self) -> View:
-        """The same view of the cover laid on its foam; it holds as much memory as this one."""
+        """The same view of the cover laid on its foam."""
         return View(
             on_foam(self.solution),
             self.camera,
@@ -254,9 +259,10 @@ class View:
             cutoff=self.cutoff,
             sampling=Sampling(self.quality, self.camera.pixels_per_degree),
             element_size=self.element_size,
+            like=self.test_studio,
         )
 
-    def _draw(self, looks: Looks, rig: Rig) -> tuple[Image, Image]:
+    def draw(self, looks: Looks, rig: Rig) -> tuple[Image, Image]:
         """Draw the cover and its reference."""
         options: dict[str, Any] = {"rig": rig, "camera": self.camera, "quality": self.quality}
         return (

@@ -24,6 +24,8 @@ from seatlook.visibility.observer import OBSERVER, Observer
 from seatlook.visibility.region import check_luminance, check_mask, weighted_mean
 
 Mask = npt.NDArray[np.bool_]
+Map = npt.NDArray[np.float32] | FloatArray
+Numbers = npt.NDArray[np.int32] | npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,9 +51,9 @@ class VisibilityScore:
     visible_share : (float, float) share of the region with D above the two values of the observer
     visible_area : the same in [m2], None where no pixel area was given
     bands : finest first
-    map : (h, w) float64           D of every pixel, masked or not: the VWI of one square degree of
+    map : (h, w) float32           D of every pixel, masked or not: the VWI of one square degree of
         such pixels
-    contrast_map : (h, w) float64  apparent contrast [%] of every pixel
+    contrast_map : (h, w) float32  apparent contrast [%] of every pixel
     """
 
     vwi: float
@@ -60,8 +62,8 @@ class VisibilityScore:
     visible_share: tuple[float, float]
     visible_area: tuple[float, float] | None
     bands: tuple[Band, ...]
-    map: FloatArray
-    contrast_map: FloatArray
+    map: npt.NDArray[np.float32]
+    contrast_map: npt.NDArray[np.float32]
 
 
 def detectability(
@@ -103,7 +105,7 @@ def score(
     *,
     pixels_per_degree: float,
     mask: Mask | None = None,
-    pixel_area: float | FloatArray | None = None,
+    pixel_area: float | Map | None = None,
     highest_frequency: float = np.inf,
     observer: Observer = OBSERVER,
 ) -> VisibilityScore:
@@ -160,13 +162,13 @@ def score(
         if area is None
         else _each(observer, lambda limit: area[limit < visibility].sum()),
         bands=_band_scores(octaves, region, pixels_per_degree, observer),
-        map=visibility,
-        contrast_map=contrast,
+        map=visibility.astype(np.float32),
+        contrast_map=contrast.astype(np.float32),
     )
 
 
 def region_visibility(
-    visibility: FloatArray,
+    visibility: Map,
     *,
     pixels_per_degree: float,
     mask: Mask | None = None,
@@ -180,7 +182,7 @@ def region_visibility(
 
     Parameters
     ----------
-    visibility : (h, w) float64    ``VisibilityScore.map``
+    visibility : (h, w)    ``VisibilityScore.map``
     mask : (h, w) bool; weight : (h, w) float64 >= 0
 
     Examples
@@ -192,13 +194,13 @@ def region_visibility(
     """
     region = check_mask(mask, visibility.shape)
     share = region.astype(float) if weight is None else region * weight
-    mean = weighted_mean(visibility**observer.pooling, share)
+    mean = weighted_mean(_power(visibility, observer), share)
     area = share.sum() ** 2 / np.square(share).sum() / pixels_per_degree**2
     return float((mean * area) ** (1 / observer.pooling))
 
 
 def region_contrast(
-    contrast: FloatArray,
+    contrast: Map,
     *,
     mask: Mask | None = None,
     weight: FloatArray | None = None,
@@ -213,12 +215,12 @@ def region_contrast(
     """
     region = check_mask(mask, contrast.shape)
     share = region if weight is None else region * weight
-    return float(weighted_mean(contrast**observer.pooling, share) ** (1 / observer.pooling))
+    return float(weighted_mean(_power(contrast, observer), share) ** (1 / observer.pooling))
 
 
 def zone_visibility(
-    visibility: FloatArray,
-    zone: npt.NDArray[np.int64],
+    visibility: Map,
+    zone: Numbers,
     count: int,
     *,
     pixels_per_degree: float,
@@ -228,22 +230,22 @@ def zone_visibility(
 
     Parameters
     ----------
-    visibility : (h, w) float64    ``VisibilityScore.map``
-    zone : (h, w) int64            number of the zone, -1 outside all of them
+    visibility : (h, w)    ``VisibilityScore.map``
+    zone : (h, w) int    number of the zone, -1 outside all of them
 
     Examples
     --------
     >>> zone_visibility(np.array([[0.0, 2.0]]), np.array([[-1, 1]]), 2, pixels_per_degree=1.0)
     array([nan,  2.])
     """
-    total, pixels = _zone_sums(visibility**observer.pooling, zone, count)
+    total, pixels = _zone_sums(_power(visibility, observer), zone, count)
     total[pixels == 0] = np.nan
     return np.asarray((total / pixels_per_degree**2) ** (1 / observer.pooling))
 
 
 def zone_contrast(
-    contrast: FloatArray,
-    zone: npt.NDArray[np.int64],
+    contrast: Map,
+    zone: Numbers,
     count: int,
     *,
     observer: Observer = OBSERVER,
@@ -255,17 +257,20 @@ def zone_contrast(
     >>> zone_contrast(np.array([[0.0, 2.0]]), np.array([[-1, 1]]), 2)
     array([nan,  2.])
     """
-    total, pixels = _zone_sums(contrast**observer.pooling, zone, count)
+    total, pixels = _zone_sums(_power(contrast, observer), zone, count)
     return np.asarray((total / np.where(pixels > 0, pixels, np.nan)) ** (1 / observer.pooling))
 
 
-def _zone_sums(
-    values: FloatArray, zone: npt.NDArray[np.int64], count: int
-) -> tuple[FloatArray, FloatArray]:
+def _zone_sums(values: FloatArray, zone: Numbers, count: int) -> tuple[FloatArray, FloatArray]:
     """Sum of the values and number of pixels of every zone."""
     inside = zone >= 0
     total = np.bincount(zone[inside], values[inside], minlength=count).astype(float)
     return total, np.bincount(zone[inside], minlength=count).astype(float)
+
+
+def _power(values: Map, observer: Observer) -> FloatArray:
+    """Values to the power of the pooling exponent, in double precision."""
+    return np.power(values, observer.pooling, dtype=np.float64)
 
 
 def _percent(contrast: FloatArray, observer: Observer) -> FloatArray:

@@ -31,7 +31,21 @@ def test_finds_what_every_triangle_finds(m, seed):
     rng = np.random.default_rng(seed)
     vertices = rng.random((3 * m, 3))
     faces = np.arange(3 * m).reshape(m, 3)
-    tree, stack = bvh.build(vertices, faces), bvh.new_stack()
+    compare(bvh.build(vertices, faces), vertices, faces, rng)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(1, 60), st.integers(0, 10**6))
+def test_finds_the_same_after_all_triangles_have_moved(m, seed):
+    rng = np.random.default_rng(seed)
+    before, after = rng.random((2, 3 * m, 3))
+    faces = np.arange(3 * m).reshape(m, 3)
+    compare(bvh.moved(bvh.build(before, faces), after, faces), after, faces, rng)
+
+
+def compare(tree, vertices, faces, rng):
+    """Rays through the hierarchy against all triangles."""
+    stack = bvh.new_stack()
     for _ in range(20):
         o, d = rng.random(3), rng.standard_normal(3)
         d /= np.linalg.norm(d)

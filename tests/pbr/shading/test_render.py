@@ -156,6 +156,22 @@ def test_exposure_does_not_depend_on_what_is_drawn(card):
     assert len({image.ev100 for image in images}) == 1
 
 
+def test_a_shape_drawn_from_the_studio_of_another_has_its_own_bytes():
+    flat_one = sheet(flat, steps=20, panels=2)
+    bent = sheet(lambda x, y: 0.004 * np.sin(60 * x), steps=20, panels=2)
+    moved = replace(flat_one, positions=bent.positions)
+    shared = Studio(moved, like=Studio(flat_one))
+    options = {"rig": OVERHEAD, "camera": above(size=(96, 96)), "quality": "standard"}
+    own = Studio(moved).render(GREY, **options)
+    assert np.array_equal(shared.render(GREY, **options).radiance, own.radiance)
+    assert shared.surface.mesh.uv is shared._like.surface.mesh.uv
+
+
+def test_no_studio_of_another_cover_is_shared():
+    with pytest.raises(InputError, match="the same in another shape"):
+        Studio(sheet(flat, steps=8), like=Studio(sheet(flat, steps=8)))
+
+
 def test_same_bytes_twice_and_from_a_new_studio():
     solution = sheet(lambda x, y: 0.01 * np.sin(60 * x), steps=20)
     look = Appearance(albedo=np.full(3, 0.3), texture="leather", texture_depth=1e-4)

@@ -36,17 +36,23 @@ def build(vertices: npt.NDArray[np.float64], faces: npt.NDArray[np.int64]) -> Bv
     """Build the hierarchy of ``vertices`` (n, 3) and ``faces`` (m, 3), m >= 1."""
     corners = vertices[faces]
     low, high, first, count, order = _build(corners.min(axis=1), corners.max(axis=1))
-    a = corners[order]
-    return Bvh(
-        low,
-        high,
-        first,
-        count,
-        np.ascontiguousarray(a[:, 0]),
-        np.ascontiguousarray(a[:, 1] - a[:, 0]),
-        np.ascontiguousarray(a[:, 2] - a[:, 0]),
-        order,
-    )
+    return Bvh(low, high, first, count, *_edges(corners[order]), order)
+
+
+def moved(tree: Bvh, vertices: npt.NDArray[np.float64], faces: npt.NDArray[np.int64]) -> Bvh:
+    """The same hierarchy round the same triangles in places a little off: only boxes are new."""
+    a = vertices[faces[tree.face]]
+    low, high = np.empty_like(tree.low), np.empty_like(tree.high)
+    _fit(tree.first, tree.size, a.min(axis=1), a.max(axis=1), low, high)
+    return Bvh(low, high, tree.first, tree.size, *_edges(a), tree.face)
+
+
+def _edges(
+    a: npt.NDArray[np.float64],
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """First corner and two edges of triangles (m, 3, 3), each (m, 3)."""
+    corner = np.ascontiguousarray(a[:, 0])
+    return corner, a[:, 1] - corner, a[:, 2] - corner
 
 
 @leaf()
@@ -136,7 +142,22 @@ def _build(low, high):
         todo.append((used, start, middle, depth + 1))
         todo.append((used + 1, middle, stop, depth + 1))
         used += 2
-    return node_low[:used], node_high[:used], first[:used], count[:used], order
+    # Copies: there are far fewer nodes than the room that was taken for them.
+    nodes = node_low[:used].copy(), node_high[:used].copy()
+    return (*nodes, first[:used].copy(), count[:used].copy(), order)
+
+
+@njit(cache=True)
+def _fit(first, size, tri_low, tri_high, low, high):
+    """Boxes of all nodes from those of the triangles in leaf order; children come after parents."""
+    low[:], high[:] = np.inf, -np.inf
+    for node in range(len(first) - 1, -1, -1):
+        if size[node]:
+            for i in range(first[node], first[node] + size[node]):
+                _grow(low[node], high[node], tri_low[i], tri_high[i])
+        elif first[node]:  # slot 1 is empty
+            for child in (first[node], first[node] + 1):
+                _grow(low[node], high[node], low[child], high[child])
 
 
 @leaf()

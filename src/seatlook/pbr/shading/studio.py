@@ -38,15 +38,16 @@ class Studio:
 
     Faces seen are cached per camera, shadows per camera and light, open sky per mesh: another
     material costs only its shading, another light only its shadows. With ``shading`` the normals
-    are those of another shape of the same cover; outlines and shadows stay. With ``seen``, the
-    studio of a shape whose vertices lie on the same rays of the only camera that is used, faces
-    seen are taken from that.
+    are those of another shape of the same cover; outlines and shadows stay. With ``like``, the
+    studio of another shape of the same cover, what does not depend on the shape is taken from that;
+    with ``seen``, one whose vertices lie on the same rays of the only camera that is used, so are
+    faces seen.
 
     Raises
     ------
     NoOffscreenContext, RenderError
     InputError
-        ``shading`` is drawn with other faces: it is of another cover.
+        ``shading``, ``like`` or ``seen`` is of another cover.
     """
 
     def __init__(
@@ -55,24 +56,31 @@ class Studio:
         *,
         shading: Solution | None = None,
         thread: Thread | None = None,
+        like: Studio | None = None,
         seen: Studio | None = None,
     ) -> None:
         offscreen_backend()
         self.solution = solution
         self.thread = pack_thread(thread or solution.cover.thread)
-        self.surface: Surface = drawn_surface(solution)
+        self._seen, self._like = seen, seen or like
+        if self._like and self._like.solution.cover is not solution.cover:
+            raise InputError.single(
+                "like", got="another cover", expected="the same in another shape"
+            )
+        first = self._like.surface if self._like else None
+        self.surface: Surface = drawn_surface(solution, like=first)
         if shading is not None:
             mesh = _with_normals(self.surface.mesh, drawn_surface(shading).mesh)
             self.surface = replace(self.surface, mesh=mesh)
-        self._seen = seen
-        if seen and not np.array_equal(seen.surface.mesh.faces, self.surface.mesh.faces):
-            self._seen = None
         self._cache = Cache()
 
     # Maps need neither: they are made for the first picture.
     @functools.cached_property
     def _bvh(self) -> bvh.Bvh:
-        return bvh.build(self.surface.mesh.vertices, self.surface.cover_mesh.faces)
+        vertices, faces = self.surface.mesh.vertices, self.surface.cover_mesh.faces
+        if self._like:
+            return bvh.moved(self._like._bvh, vertices, faces)
+        return bvh.build(vertices, faces)
 
     @functools.cached_property
     def _indirect(self) -> IndirectLight:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
@@ -61,8 +61,13 @@ class Surface:
         return m._replace(faces=m.faces[: self.opaque], panel=m.panel[: self.opaque])
 
 
-def drawn_surface(solution: Solution) -> Surface:
+def drawn_surface(solution: Solution, *, like: Surface | None = None) -> Surface:
     """Refine the solved cover until its elements do not show, and add the foam.
+
+    Parameters
+    ----------
+    like : of the same cover in another shape; the foam is as that has pressed it, and what does
+        not depend on the shape is shared
 
     Raises
     ------
@@ -82,6 +87,8 @@ def drawn_surface(solution: Solution) -> Surface:
     uv = np.ascontiguousarray(refined.points[:, 3:])
     edges = seam.sewn_edges(cover, refined, uv)
     x = seam.close(refined.points[:, :3], edges)
+    if like is not None:
+        return _moved(like, x, edges)
     panel = np.repeat(cover.panel, 4**levels)
     mesh = Mesh(
         x,
@@ -99,6 +106,25 @@ def drawn_surface(solution: Solution) -> Surface:
     if cover.foam is not None:
         mesh = with_foam(mesh, cover.foam, len(cover.panel_names), cover=n)
     return Surface(mesh, refined, n, m, k, np.array(cover.faces), cover.element_size)
+
+
+def _moved(like: Surface, x: FloatArray, edges: seam.SewnEdges) -> Surface:
+    """The surface of the same cover with its refined vertices at ``x`` (n, 3)."""
+    old, faces = like.mesh, like.refined.faces
+    points, normals = [x], [vertex_normals(x, faces)]
+    warp = [_warp(x, old.uv[: len(x)], faces)]
+    if len(edges):
+        below, _, origin = seam.turned_in(x, normals[0], edges)
+        points.append(below)
+        normals.append(normals[0][origin])
+        warp.append(warp[0][origin])
+    rest = slice(sum(map(len, points)), None)
+    mesh = old._replace(
+        vertices=np.vstack([*points, old.vertices[rest]]),
+        normals=np.vstack([*normals, old.normals[rest]]),
+        warp=np.vstack([*warp, old.warp[rest]]),
+    )
+    return replace(like, mesh=mesh)
 
 
 def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
