@@ -190,6 +190,7 @@ def open(
     changes: Iterable[str] = (),
     seed: int | None = None,
     element_size: float | None = None,
+    tolerance: float | None = None,
     result: Path | str | None = None,
 ) -> Seat:
     """Open a seat.
@@ -199,6 +200,7 @@ def open(
     scene : scene file, or a scene
     changes : values set over those of the file, such as ``"mesh.seed=3"``
     seed, element_size : instead of the scene's; float [m], panels' own sizes scale with it
+    tolerance : relative error of zone means of W2 from which the mesh follows, instead of a size
     result : result file whose shape is taken as it is; without it the seat is solved when asked
 
     Raises
@@ -208,7 +210,7 @@ def open(
     """
     read = scene if isinstance(scene, Scene) else _read(Path(scene), changes)
     return Seat(
-        with_mesh(read, element_size=element_size, seed=seed),
+        with_mesh(read, element_size=element_size, tolerance=tolerance, seed=seed),
         solution=None if result is None else io.read_result(result),
     )
 

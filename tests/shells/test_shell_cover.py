@@ -8,7 +8,7 @@ import pytest
 
 from seatlook import wrinkle
 from seatlook.chain.assess import assess
-from seatlook.chain.shell_states import ShellCriteria, shell_indices
+from seatlook.chain.shells.states import ShellCriteria, shell_indices
 from seatlook.errors import InputError
 from seatlook.io.lsdyna.shells import read_shells
 from seatlook.mesh import face_normals

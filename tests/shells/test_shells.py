@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatlook.chain.shell_states import ShellCriteria, wrinkle_states
+from seatlook.chain.shells.states import ShellCriteria, wrinkle_states
 from seatlook.errors import InputError
 from support.d3plot_samples import d3plot, quad_strip
 

@@ -33,7 +33,7 @@ def waved_sheet(path, side=SIDE):
 COMMAND = """
 import resource, sys
 from seatlook.__main__ import main
-from seatlook.chain import shell_maps
+from seatlook.chain.shells import maps as shell_maps
 
 next_step = shell_maps.write_elements
 

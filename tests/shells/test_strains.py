@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatlook.chain.shell_states import ShellCriteria, shell_indices
+from seatlook.chain.shells.states import ShellCriteria, shell_indices
 from seatlook.errors import InputError
 from seatlook.model import Shells, ShellState
 

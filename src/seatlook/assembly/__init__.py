@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -11,11 +11,12 @@ import numpy as np
 from seatlook import mesh
 from seatlook.assembly.builder import Builder
 from seatlook.assembly.digest import content_digest
+from seatlook.assembly.grading import Grading
 from seatlook.assembly.hem import hem_of
 from seatlook.assembly.placing import with_poses
 from seatlook.errors import AssemblyError, InputError, Problem
 from seatlook.model import Cover, FloatArray, Hook, IntArray, Panel, Scene, criteria_of
-from seatlook.model.scene import ELEMENT_SIZES, LARGEST_SEED
+from seatlook.model.scene import ELEMENT_SIZES, FIRST_SIZE, LARGEST_SEED, TOLERANCES
 from seatlook.model.zones import zones
 
 # Wavelengths [m] of a cut panel's unevenness: from the shortest wrinkle of a cover on its foam to
@@ -24,7 +25,13 @@ _SHORTEST, _LONGEST = 0.03, 0.24
 _WAVES = 64
 
 
-def assemble(scene: Scene, *, element_size: float | None = None, seed: int | None = None) -> Cover:
+def assemble(
+    scene: Scene,
+    *,
+    element_size: float | None = None,
+    seed: int | None = None,
+    sizes: Mapping[str, Grading] = MappingProxyType({}),
+) -> Cover:
     """Mesh and place all panels of a scene and pair up what is sewn, hooked and framed.
 
     Parameters
@@ -32,6 +39,7 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
     scene : Scene
     element_size : float [m], optional      overrides the scene's; panels' own scale with it
     seed : int, optional                    overrides the scene's; drives mesh and imperfection
+    sizes : panel name -> sizes             of panels whose element size varies inside
 
     Returns
     -------
@@ -55,7 +63,7 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
     digest = content_digest(scene)
     scene = with_poses(scene)
     panels = scene.pattern.panels
-    builder = Builder(scene.pattern, scene.element_size, scene.element_sizes)
+    builder = Builder(scene.pattern, scene.element_size, {**scene.element_sizes, **sizes})
     for i, panel in enumerate(panels):
         builder.add(panel, _hooked_lines(scene.hooks, panel), seed=1000 * scene.seed + i)
     uv, faces, owner = builder.arrays()
@@ -90,8 +98,40 @@ def assemble(scene: Scene, *, element_size: float | None = None, seed: int | Non
     )
 
 
-def with_mesh(scene: Scene, *, element_size: float | None = None, seed: int | None = None) -> Scene:
-    """Put another element size [m] and seed into a scene; panels' own sizes scale with it."""
+def with_mesh(
+    scene: Scene,
+    *,
+    element_size: float | None = None,
+    tolerance: float | None = None,
+    seed: int | None = None,
+) -> Scene:
+    """Put another element size [m], or tolerance of zone means, and seed into a scene.
+
+    Panels' own sizes scale with the size. A size goes in place of a tolerance, and the other way.
+
+    Raises
+    ------
+    InputError   both, or one that is out of bounds
+    """
+    if element_size is not None and tolerance is not None:
+        raise InputError.single(
+            "tolerance_percent", got="element_size_mm as well", expected="one of them"
+        )
+    if tolerance is not None:
+        low, high = TOLERANCES
+        if not low <= tolerance <= high:
+            raise InputError.single(
+                "tolerance_percent", got=f"{100 * tolerance:g}",
+                expected=f"{100 * low:g} to {100 * high:g}",
+            )  # fmt: skip
+        scene = replace(
+            scene,
+            tolerance=tolerance,
+            element_size=FIRST_SIZE,
+            element_sizes=MappingProxyType({}),
+        )
+    elif element_size is not None:
+        scene = replace(scene, tolerance=None)
     size = scene.element_size if element_size is None else element_size
     finest, coarsest = ELEMENT_SIZES
     if not finest <= size <= coarsest:

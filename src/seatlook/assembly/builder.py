@@ -23,6 +23,7 @@ from seatlook.assembly.lines import (
     stitches,
 )
 from seatlook.errors import InputError
+from seatlook.mesh.polyline import Sizes, sizes_at
 from seatlook.model import (
     Anchor,
     FloatArray,
@@ -66,7 +67,10 @@ class Builder:
     """Collects the panels' meshes and finds vertex lines in them."""
 
     def __init__(
-        self, pattern: Pattern, element_size: float, own: Mapping[str, float] = MappingProxyType({})
+        self,
+        pattern: Pattern,
+        element_size: float,
+        own: Mapping[str, float | Sizes] = MappingProxyType({}),
     ) -> None:
         self.pattern = pattern
         self.size = {p.name: own.get(p.name, element_size) for p in pattern.panels}
@@ -84,13 +88,14 @@ class Builder:
         place: dict[int, int] = {}
         for start, end in zip(stops, [*stops[1:], stops[0] + n], strict=True):
             span = panel.outline[np.arange(start, end + 1) % n]
-            points = mesh.resample(span, h)[:-1]
             place[start] = len(steps)
-            sampled.append(points)
+            sampled.append(mesh.resample(span, h)[:-1])
             # Of the drawn span, not of the chords: both sides of a seam keep their scale.
-            steps += len(points) * [mesh.arc_length(span)[-1] / len(points)]
+            steps += mesh.resampled_steps(span, h).tolist()
         inner = [mesh.resample(line, h) for line in lines.values()]
-        holes = [_sampled_hole(hole, h, panel.name) for hole in panel.holes]
+        holes = [
+            _sampled_hole(hole, float(sizes_at(h, hole).min()), panel.name) for hole in panel.holes
+        ]
         with _panel_named(panel.name):
             points, faces = mesh.triangulate(
                 np.concatenate(sampled), h, lines=inner, holes=holes, seed=seed
@@ -113,9 +118,9 @@ class Builder:
         behind = outline - np.roll(outline, 1, axis=0)
         cross = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
         turn = np.abs(np.arctan2(cross, (behind * ahead).sum(axis=1)))
-        stops, closest = list(ends), self.size[panel.name] / 2
+        stops, closest = list(ends), sizes_at(self.size[panel.name], outline) / 2
         for k in panel.corners:
-            near = stops and np.linalg.norm(outline[stops] - outline[k], axis=1).min() < closest
+            near = stops and np.linalg.norm(outline[stops] - outline[k], axis=1).min() < closest[k]
             if turn[k] > CORNER and not near:
                 stops.append(int(k))
         return sorted(stops) or [int(np.argmax(turn))]
@@ -149,14 +154,19 @@ class Builder:
         """
         near, far = self.chain([seam.a]), self.chain(seam.b, reverse=seam.reverse)
         knots_a, knots_b = seam_ease(self.pattern, seam).knots
+        varies = any(not isinstance(size, float | int) for size in self.size.values())
         a, b = [], []
         weight, places = [], []
         total_a, total_b = near[0].length, sum(ln.length for ln in far)
         start = 0.0
         for side in far:
             share = side.length / total_b
-            span = share * total_a
-            pitch = max(seam.pitch, side.spacing, near[0].spacing * span / max(span, 1e-12))
+            pitch: float | FloatArray = max(seam.pitch, side.spacing, near[0].spacing)
+            if varies:
+                part = np.linspace(0.0, 1.0, 4 * max(len(side.arc), len(near[0].arc)))
+                beside = total_a * np.interp(start + share * part, knots_b, knots_a)
+                steps = side.steps_at(part * side.length), near[0].steps_at(beside)
+                pitch = np.maximum(seam.pitch, np.maximum(*steps))
             at, length = stitches(share, total_a, pitch)
             share_a = np.interp(start + at, knots_b, knots_a)
             a.append(near[0].points(total_a * share_a))

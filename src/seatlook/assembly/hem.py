@@ -14,6 +14,7 @@ from seatlook.assembly.builder import Builder
 from seatlook.assembly.ease import seam_ease
 from seatlook.assembly.lines import Line
 from seatlook.mesh import arc_length
+from seatlook.mesh.polyline import sizes_at
 from seatlook.model import Fabric, FloatArray, Hem, IntArray, Panel, Pattern, Scene, Seam
 
 _STEP = 0.001  # of the points on a sew line at which its allowance is measured [m]
@@ -98,7 +99,7 @@ def hem_of(builder: Builder, scene: Scene, uv: FloatArray, faces: IntArray) -> H
         vertices = np.flatnonzero(owner == i)
         distance, at = _nearest(sewn, uv[vertices])
         lift[vertices] = fabric.thickness * _ramp(
-            distance, sewn.width[at], builder.size[panel.name]
+            distance, sewn.width[at], sizes_at(builder.size[panel.name], uv[vertices])
         )
     folds = _folds(builder, scene, uv)
     return Hem(bending=bending, density=density, lift=lift, **folds)
@@ -139,7 +140,7 @@ def _nearest(sewn: _Sewn, points: FloatArray) -> tuple[FloatArray, IntArray]:
     return np.asarray(distance), np.asarray(index, dtype=np.int64)
 
 
-def _ramp(distance: FloatArray, width: FloatArray, h: float) -> FloatArray:
+def _ramp(distance: FloatArray, width: FloatArray, h: FloatArray) -> FloatArray:
     """1 over the allowance, falling to 0 over one element: a sheet bridges the step."""
     return np.clip((width + 0.5 * h - distance) / h, 0.0, 1.0) * (width > _STEP)
 

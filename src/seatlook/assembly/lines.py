@@ -32,6 +32,11 @@ class Line:
             weights=np.column_stack([1.0 - w, w]),
         )
 
+    def steps_at(self, at: FloatArray) -> FloatArray:
+        """Distance (s,) [m] of the two vertices around arc lengths ``at`` (s,)."""
+        k = np.searchsorted(self.arc[1:-1], at, side="right")
+        return np.asarray(np.diff(self.arc)[k])
+
     def turned(self) -> Line:
         """The same line, run through from its other end."""
         return Line(self.vertices[::-1], self.length - self.arc[::-1])
@@ -52,13 +57,27 @@ def line_through(points: FloatArray, vertices: IntArray, offset: int) -> Line:
     return Line(vertices + offset, mesh.arc_length(points[vertices]))
 
 
-def stitches(share: float, total: float, pitch: float) -> tuple[FloatArray, FloatArray]:
-    """Stitch places in [0, share] (both ends and the middles between) and their lengths [m]."""
-    count = max(1, round(share * total / pitch))
-    middle = (np.arange(count) + 0.5) / count
+def stitches(
+    share: float, total: float, pitch: float | FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Stitch places in [0, share] (both ends and the middles between) and their lengths [m].
+
+    Parameters
+    ----------
+    share : of the line's length ``total`` [m]
+    pitch : distance of the stitches [m], or (k,) at even steps from 0 to ``share``
+    """
+    if isinstance(pitch, np.ndarray):
+        way = share * total * np.linspace(0.0, 1.0, len(pitch))
+        borders = mesh.even_places(way, pitch) / way[-1]
+        count, middle = len(borders) - 1, (borders[1:] + borders[:-1]) / 2
+        step = count * np.diff(borders)
+    else:
+        count = max(1, round(share * total / pitch))
+        middle, step = (np.arange(count) + 0.5) / count, np.ones(count)
     at = share * np.concatenate([[0.0], middle, [1.0]])
-    length = share * total / count * np.concatenate([[0.5], np.ones(count), [0.5]])
-    return at, length * count / (count + 1)
+    length = share * total / count * np.concatenate([[0.5 * step[0]], step, [0.5 * step[-1]]])
+    return at, length * count / (count + 0.5 * (step[0] + step[-1]))
 
 
 def join(parts: Sequence[Points]) -> Points:

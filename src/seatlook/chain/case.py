@@ -21,7 +21,7 @@ from seatlook.chain.assess import Assessment, assess, limited, zones_with_faces
 from seatlook.chain.choose import Look, camera_of, look_of, narrowed, rig_of
 from seatlook.chain.draw import map_ends
 from seatlook.chain.files import earlier_result, of_scene
-from seatlook.chain.timeline import solve_in_stages
+from seatlook.chain.local import solve_scene, solve_scene_in_stages
 from seatlook.errors import InputError, SolverError
 from seatlook.model import (
     Appearance,
@@ -40,7 +40,7 @@ from seatlook.pbr.picture import img
 from seatlook.results.gap import ZoneGap
 from seatlook.results.resolution import Resolution
 from seatlook.results.ring_pulls import RingPull, ring_pulls
-from seatlook.solver import SolverSettings, solve
+from seatlook.solver import SolverSettings
 from seatlook.visibility.light_search import WorstLight, worst_lights
 from seatlook.visibility.reference import CUTOFF, Mode
 from seatlook.visibility.scoring import SceneScore, score_scene
@@ -84,17 +84,21 @@ class Case:
         )
         return f"{img(image.to_png(), f'{self.scene.name}, {texture}')}<pre>{self!r}</pre>"
 
-    @cached_property
+    @property
     def cover(self) -> Cover:
         """The panels meshed and placed, with what pulls on them.
+
+        Where the mesh follows from a tolerance, it is a first mesh until the seat is solved.
 
         Raises
         ------
         InputError
             As ``assemble``; or the pattern is out of scale with the foam.
         """
-        if self._solution is not None:
-            return self._solution.cover
+        return self._placed if self._solution is None else self._solution.cover
+
+    @cached_property
+    def _placed(self) -> Cover:
         refuse(out_of_scale(self.scene))
         return assemble(self.scene)
 
@@ -151,10 +155,8 @@ class Case:
             progress("mesh")
             cover = self.cover
             with mesh_in_memory(cover):
-                self._solution = solve(
-                    cover,
-                    settings=settings or SolverSettings(),
-                    progress=lambda **figures: progress("solve", **figures),
+                self._solution = solve_scene(
+                    self.scene, cover, settings=settings, progress=progress
                 )
         if path is not None:
             io.write_result(self._solution, path)
@@ -169,13 +171,15 @@ class Case:
         progress: Progress = silent,
     ) -> Solution:
         """Solve, and keep the state at the end of every stage, see ``chain.timeline``."""
-        with mesh_in_memory(self.cover):
-            self._solution = solve_in_stages(
-                self.cover,
+        cover = self.cover
+        with mesh_in_memory(cover):
+            self._solution = solve_scene_in_stages(
+                self.scene,
+                cover,
                 folder,
                 again_from=again_from,
                 resume=resume,
-                progress=lambda **figures: progress("solve", **figures),
+                progress=progress,
             )
         return self._solution
 

@@ -169,13 +169,16 @@ def seeds_for(row: ZoneRow, figures: Mapping[str, float], share: float = 0.2) ->
     return seeds_needed(row.w2_scatter / half_width(count) / row["w2_mean"], share)
 
 
-def with_companions(solution: Solution, zones: Sequence[ZoneMean], seeds: int) -> Solution:
+def with_companions(
+    solution: Solution, zones: Sequence[ZoneMean], seeds: int | None = None
+) -> Solution:
     """A result that carries the companions of its zones among its figures."""
-    figures = dict(solution.figures) | {_SEEDS: float(seeds)}
+    figures = dict(solution.figures)
+    if seeds is not None:
+        figures[_SEEDS] = float(seeds)
     for zone in zones:
         for key, value in zip(companion_keys(zone.zone), (zone.error, zone.scatter), strict=True):
-            if math.isfinite(value):
-                figures[key] = value
+            figures |= {key: value} if math.isfinite(value) else {}
     return replace(solution, figures=MappingProxyType(figures))
 
 

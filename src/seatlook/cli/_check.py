@@ -5,7 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from seatlook.cli._options import Changes, ElementSize, SceneFile, Seed, note_coarse, seat_of
+from seatlook.cli._options import (
+    Changes,
+    ElementSize,
+    SceneFile,
+    Seed,
+    TolerancePercent,
+    note_coarse,
+    seat_of,
+)
 from seatlook.cli._output import Json, note, say, table
 from seatlook.errors import InputError, RenderError
 
@@ -25,6 +33,7 @@ def check(
     *,
     seed: Seed = None,
     element_size_mm: ElementSize = None,
+    tolerance_percent: TolerancePercent = None,
     changes: Changes = (),
     json: Json = False,
 ) -> None:
@@ -42,7 +51,7 @@ def check(
     from seatlook.assembly.start_lines import start_lines
     from seatlook.results.resolution import expected_waves
 
-    seat = seat_of(scene, seed, element_size_mm, changes)
+    seat = seat_of(scene, seed, element_size_mm, changes, tolerance_percent)
     drawing = _drawing(seat, scene.parent / "check" / "assembly.png")
     cover, pattern = seat.check(), seat.scene.pattern
     read = _pattern_lines(scene, changes)
@@ -57,7 +66,7 @@ def check(
         ("what", "value"),
         [
             ("scene", seat.scene.name),
-            *_mesh_figures(cover, waves),
+            *_mesh_figures(cover, waves, seat),
             ("drawing", None if drawing is None else str(drawing)),
             *([("ease", seams), ("held", held), ("pattern", read)] if json else ()),
             *([("waves", list(map(_wave_row, waves)))] if json else ()),
@@ -71,10 +80,22 @@ def check(
     note(f"nothing wrong; to solve and draw it: seatlook evaluate {scene} --out FOLDER")
 
 
-def _mesh_figures(cover: Cover, waves: Sequence[Waves]) -> list[tuple[str, Any]]:
+def _mesh_figures(cover: Cover, waves: Sequence[Waves], seat: Seat) -> list[tuple[str, Any]]:
     """What there is to solve, and whether its mesh will carry it."""
+    from seatlook.chain.local import forecast
+
+    asked: list[tuple[str, Any]] = []
+    if seat.scene.tolerance is not None:
+        expected = forecast(seat.scene)
+        asked = [
+            ("tolerance_percent", 100 * expected.tolerance),
+            ("finest_element_mm", 1e3 * expected.finest),
+            ("coarsest_element_mm", 1e3 * expected.coarsest),
+            ("vertices_at_most", expected.vertices[1]),
+            ("cpu_seconds_at_most", expected.cpu_seconds[1]),
+        ]
     finest = min(waves, key=lambda wave: wave.wavelength)
-    resolved = all(wave.resolved for wave in waves)
+    resolved = bool(asked) or all(wave.resolved for wave in waves)
     return [
         ("panels", len(cover.panel_names)),
         ("seams", len(cover.stitchings)),
@@ -85,6 +106,7 @@ def _mesh_figures(cover: Cover, waves: Sequence[Waves]) -> list[tuple[str, Any]]
         ("wavelength_mm", 1e3 * finest.wavelength),
         ("wavelength_over_element_size", finest.wavelength / cover.element_size),
         ("expected_status", "resolved" if resolved else "converged, not resolved"),
+        *asked,
     ]
 
 

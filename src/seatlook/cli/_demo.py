@@ -25,6 +25,7 @@ def demo(
     material: str = "leather-laminate",
     insert: str | None = None,
     element_size_mm: float = 7.0,
+    tolerance_percent: float | None = None,
     seed: Seed = 0,
     resume: Resume = False,
     score: Scored = True,
@@ -65,6 +66,8 @@ def demo(
         Material of the middle panel, if it is another one.
     element_size_mm
         Mean edge length of the mesh.
+    tolerance_percent
+        Error of the zone means of W2 that the mesh is to keep, instead of an element size.
     files_only
         Write the files, and evaluate nothing.
     """
@@ -87,6 +90,7 @@ def demo(
             material=material,
             insert=insert,
             element_size_mm=element_size_mm,
+            tolerance_percent=tolerance_percent,
             seed=seed or 0,
             progress=show,
         )

@@ -17,6 +17,7 @@ from seatlook.cli._options import (
     Scored,
     Seed,
     SingleFile,
+    TolerancePercent,
     exit_code_of,
     note_coarse,
     seat_of,
@@ -38,6 +39,7 @@ def evaluate(
     out: Out,
     seed: Seed = None,
     element_size_mm: ElementSize = None,
+    tolerance_percent: TolerancePercent = None,
     changes: Changes = (),
     resume: Resume = False,
     score: Scored = True,
@@ -55,7 +57,7 @@ def evaluate(
 
     Example: seatlook evaluate seat.toml --out out/seat
     """
-    seat = seat_of(scene, seed, element_size_mm, changes)
+    seat = seat_of(scene, seed, element_size_mm, changes, tolerance_percent)
     if dry_run:
         return _list_cells(seat, out, json=json)
     missed = run_evaluation(

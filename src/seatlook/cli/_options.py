@@ -32,6 +32,12 @@ ElementSize = Annotated[
     float | None,
     Parameter(help="Mean edge length of the mesh, instead of the scene's; panels' own scale."),
 ]
+TolerancePercent = Annotated[
+    float | None,
+    Parameter(
+        help="Error of the zone means of W2 that the mesh is to keep, instead of an element size."
+    ),
+]
 Resume = Annotated[
     bool,
     Parameter(
@@ -74,12 +80,14 @@ def seat_of(
     seed: int | None = None,
     element_size_mm: float | None = None,
     changes: tuple[str, ...] = (),
+    tolerance_percent: float | None = None,
 ) -> Seat:
     """Open a scene with what the command line overrides."""
     import seatlook
 
     size = None if element_size_mm is None else element_size_mm / 1e3
-    return seatlook.open(scene, changes=changes, seed=seed, element_size=size)
+    tolerance = None if tolerance_percent is None else tolerance_percent / 100
+    return seatlook.open(scene, changes=changes, seed=seed, element_size=size, tolerance=tolerance)
 
 
 def solved_seat(scene: Path, result: Path | None = None) -> Seat:
@@ -117,9 +125,13 @@ def checked_result_name(out: Path) -> None:
 
 
 def note_coarse(seat: Seat) -> None:
-    """Say, before a solve, which material its mesh will not resolve."""
+    """Say, before a solve, which material its mesh will not resolve, or what a tolerance takes."""
+    from seatlook.chain.local import forecast
     from seatlook.results.resolution import expected_waves
 
+    if seat.scene.tolerance is not None:
+        note(forecast(seat.scene).sentence)
+        return
     waves = expected_waves(seat.cover)
     note(*(f"will not be resolved: {wave.sentence}" for wave in waves if not wave.resolved))
 

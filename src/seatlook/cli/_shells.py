@@ -14,7 +14,7 @@ from seatlook.cli._output import print_rows, progress, say, show_json, table
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.chain.shell_states import AssessedStates, ShellCriteria
+    from seatlook.chain.shells.states import AssessedStates, ShellCriteria
     from seatlook.model import CurvatureMode, FloatArray, ShellResult, StrainMeasure
 
 _MM = 1e-3
@@ -98,7 +98,7 @@ def check_no_options(file: Path, shells: ShellOptions | None) -> None:
 
 def assess_file(file: Path, options: ShellOptions, asked: _Asked, outputs: _Outputs) -> None:
     """Assess all states of a file; draw some, export the last of them, print the figures."""
-    from seatlook.chain.shell_states import assess_states
+    from seatlook.chain.shells.states import assess_states
     from seatlook.io import read_shells
 
     criteria = _criteria(options, asked)
@@ -129,7 +129,7 @@ def assess_file(file: Path, options: ShellOptions, asked: _Asked, outputs: _Outp
 
 
 def _criteria(options: ShellOptions, asked: _Asked) -> ShellCriteria:
-    from seatlook.chain.shell_states import ShellCriteria
+    from seatlook.chain.shells.states import ShellCriteria
     from seatlook.model.criteria import threshold_of_radius
 
     mode, threshold = asked.curvature or "paper", asked.threshold
@@ -155,7 +155,7 @@ def _draw(
     from seatlook import io
     from seatlook.chain.case import export
     from seatlook.chain.run_folder import run_folder
-    from seatlook.chain.shell_maps import assess_shells, draw_state
+    from seatlook.chain.shells.maps import assess_shells, draw_state
     from seatlook.report.shell_page import write_shell_page
     from seatlook.shells.cover import shell_cover
 

@@ -14,6 +14,7 @@ from seatlook.cli._options import (
     ResultOut,
     SceneFile,
     Seed,
+    TolerancePercent,
     checked_result_name,
     exit_code_of,
     note_coarse,
@@ -35,6 +36,7 @@ def solve(
     out: ResultOut,
     seed: Seed = None,
     element_size_mm: ElementSize = None,
+    tolerance_percent: TolerancePercent = None,
     changes: Changes = (),
     stages: Annotated[bool, Parameter(negative=())] = False,
     again_from: Annotated[str | None, Parameter(name="--from")] = None,
@@ -66,7 +68,7 @@ def solve(
     checked_result_name(out)
     if again_from is not None and resume:
         raise InputError.single("--from", got="--resume as well", expected="one of them")
-    seat = seat_of(scene, seed, element_size_mm, changes)
+    seat = seat_of(scene, seed, element_size_mm, changes, tolerance_percent)
     note_coarse(seat)
     with progress() as show:
         if stages or resume or again_from is not None:

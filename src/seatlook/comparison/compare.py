@@ -193,8 +193,13 @@ class Comparison:
     @property
     def unequal_error(self) -> str:
         """A sentence where variants are not compared at equal error; "" where they are."""
-        waves = {name: case.resolution.waves for name, case in self.variants.items()}
-        errors = {name: max(wave.error for wave in own) for name, own in waves.items() if own}
+        errors = {}
+        for name, case in self.variants.items():
+            found = case.resolution
+            if found.error is not None:
+                errors[name] = found.error
+            elif found.waves:
+                errors[name] = max(wave.error for wave in found.waves)
         if not errors or max(errors.values()) <= _EQUAL * min(errors.values()):
             return ""
         text = ", ".join(f"{name} {100 * error:.2g} %" for name, error in errors.items())

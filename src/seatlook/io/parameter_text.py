@@ -42,6 +42,7 @@ _FILE_KEYS: Mapping[str, tuple[str, float]] = {
     "unloading_stress": ("unloading_stress_kpa", 1e-3),
     "young": ("young_kpa", 1e-3),
     "element_size": ("element_size_mm", 1e3),
+    "tolerance": ("tolerance_percent", 100.0),
     "smallest_notch": ("smallest_notch_mm", 1e3),
 }
 

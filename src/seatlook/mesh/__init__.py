@@ -29,6 +29,9 @@ if TYPE_CHECKING:
         directions_at as directions_at,
     )
     from seatlook.mesh.polyline import (
+        even_places as even_places,
+    )
+    from seatlook.mesh.polyline import (
         is_closed as is_closed,
     )
     from seatlook.mesh.polyline import (
@@ -45,6 +48,9 @@ if TYPE_CHECKING:
     )
     from seatlook.mesh.polyline import (
         resample as resample,
+    )
+    from seatlook.mesh.polyline import (
+        resampled_steps as resampled_steps,
     )
     from seatlook.mesh.polyline import (
         segment_lengths as segment_lengths,
@@ -95,6 +101,7 @@ _PUBLIC: dict[str, str] = {
     "directions_at": "seatlook.mesh.polyline",
     "edge_lengths": "seatlook.mesh.surface",
     "edges": "seatlook.mesh.surface",
+    "even_places": "seatlook.mesh.polyline",
     "face_areas": "seatlook.mesh.surface",
     "face_normals": "seatlook.mesh.surface",
     "face_vectors": "seatlook.mesh.surface",
@@ -107,6 +114,7 @@ _PUBLIC: dict[str, str] = {
     "nearest_places": "seatlook.mesh.polyline",
     "points_at": "seatlook.mesh.polyline",
     "resample": "seatlook.mesh.polyline",
+    "resampled_steps": "seatlook.mesh.polyline",
     "segment_lengths": "seatlook.mesh.polyline",
     "triangulate": "seatlook.mesh.outline",
     "vertex_normals": "seatlook.mesh.surface",
@@ -123,6 +131,7 @@ __all__ = [
     "directions_at",
     "edge_lengths",
     "edges",
+    "even_places",
     "face_areas",
     "face_normals",
     "face_vectors",
@@ -135,6 +144,7 @@ __all__ = [
     "nearest_places",
     "points_at",
     "resample",
+    "resampled_steps",
     "segment_lengths",
     "triangulate",
     "vertex_normals",

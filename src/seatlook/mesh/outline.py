@@ -10,6 +10,7 @@ import shapely
 from scipy.spatial import Delaunay, cKDTree
 
 from seatlook.errors import InputError, Problem
+from seatlook.mesh.polyline import Sizes, sizes_at
 from seatlook.mesh.surface import (
     FloatArray,
     IntArray,
@@ -28,6 +29,7 @@ MAX_HEXAGONAL_BIAS = 0.1
 _JITTER = 0.5  # of h, to each side; less leaves a six-fold lattice that steers buckles
 _CLEARANCE = 0.55  # of h; free points closer than this to a neighbour or a line are dropped
 _SMOOTHING_ROUNDS = 3
+_RUNG = 1.25  # of neighbouring lattices where the size varies
 _LATTICE = 0.865  # of h; thinning widens the mesh by the inverse (measured 1.156)
 _REPAIR_ROUNDS = 12
 _ENOUGH_DEG = 26.0  # repair beyond this costs half of the time and changes nothing in the solver
@@ -37,7 +39,7 @@ _FLAT = 1e-9  # of the median area; a face below it is a line
 
 def triangulate(
     boundary: FloatArray,
-    element_size: float,
+    element_size: float | Sizes,
     *,
     lines: Sequence[FloatArray] = (),
     holes: Sequence[FloatArray] = (),
@@ -52,8 +54,8 @@ def triangulate(
     ----------
     boundary : (b, 2) float64 [m]
         Outline, counter-clockwise, first vertex not repeated, sampled at about ``element_size``.
-    element_size : float [m]
-        Mean edge length h aimed at.
+    element_size : float [m], or one that varies
+        Mean edge length h aimed at. Where it varies it should grow by a quarter of the way at most.
     lines : polylines (k, 2) [m]
         Sampled likewise; an end on the outline or on another line coincides with a point there.
     holes : closed polylines (k, 2) [m], the first vertex not repeated
@@ -83,13 +85,14 @@ def triangulate(
     >>> bool(np.degrees(angles(points, faces)).min() > 20)
     True
     """
-    region = _region(boundary, holes, element_size)
+    finest = element_size if isinstance(element_size, float | int) else element_size.finest
+    region = _region(boundary, holes, finest)
     rings = [np.vstack([hole, hole[:1]]) for hole in holes]
-    fixed, segments = _constraints(boundary, [*lines, *rings], element_size)
+    fixed, segments = _constraints(boundary, [*lines, *rings], finest)
     problems: list[Problem] = []
     for attempt in range(_ATTEMPTS):
         rng = np.random.default_rng((seed, attempt))
-        free = _scatter(region, fixed, segments, _LATTICE * element_size, rng)
+        free = _scatter(region, fixed, segments, element_size, rng)
         points, faces = _smoothed(region, fixed, segments, free, element_size)
         problems = _misses(points, faces, segments, len(fixed))
         if not problems:
@@ -140,10 +143,37 @@ def _scatter(
     region: shapely.Polygon,
     fixed: FloatArray,
     segments: IntArray,
-    h: float,
+    size: float | Sizes,
     rng: np.random.Generator,
 ) -> FloatArray:
-    """Return a jittered, randomly turned lattice inside the region, clear of all fixed lines."""
+    """Return points inside the region as dense as they are to be, clear of all fixed lines.
+
+    They are those of jittered, randomly turned lattices, of each where its step is the nearest.
+    """
+    ladder = _ladder(size)
+    lattices = [_lattice(region, h, rng) for h in ladder]
+    if len(ladder) > 1:
+        between = np.sqrt(ladder[1:] * ladder[:-1])
+        steps = [np.searchsorted(between, _LATTICE * sizes_at(size, p)) for p in lattices]
+        lattices = [p[step == k] for k, (p, step) in enumerate(zip(lattices, steps, strict=True))]
+    free = np.concatenate(lattices)
+    clearance = _CLEARANCE * np.repeat(ladder, list(map(len, lattices)))
+    walls = shapely.multilinestrings(fixed[segments])
+    shapely.prepare(walls)
+    clear = ~shapely.dwithin(walls, shapely.points(free), clearance)
+    return _thin(free[clear], clearance[clear])
+
+
+def _ladder(size: float | Sizes) -> FloatArray:
+    """Steps (k,) [m] of the lattices that make all sizes, rising."""
+    if isinstance(size, float | int):
+        return np.array([_LATTICE * size])
+    count = int(np.ceil(np.log(size.coarsest / size.finest) / np.log(_RUNG))) + 1
+    return np.asarray(_LATTICE * np.geomspace(size.finest, size.coarsest, count))
+
+
+def _lattice(region: shapely.Polygon, h: float, rng: np.random.Generator) -> FloatArray:
+    """Points (k, 2) of one jittered, randomly turned lattice inside the region."""
     x0, y0, x1, y1 = region.bounds
     centre, radius = np.array([x0 + x1, y0 + y1]) / 2, np.hypot(x1 - x0, y1 - y0) / 2 + h
     rise = h * np.sqrt(3) / 2
@@ -152,40 +182,42 @@ def _scatter(
     lattice = np.column_stack([i, j]) + rng.uniform(-_JITTER, _JITTER, (len(i), 2)) * h
     turn = rng.uniform(0, np.pi / 3)
     rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-    free = centre + lattice @ rotation.T
-    free = free[shapely.contains_xy(region, free)]
-    walls = shapely.multilinestrings(fixed[segments])
-    shapely.prepare(walls)
-    free = free[~shapely.dwithin(walls, shapely.points(free), _CLEARANCE * h)]
-    return _thin(free, _CLEARANCE * h)
+    points = centre + lattice @ rotation.T
+    return np.asarray(points[shapely.contains_xy(region, points)])
 
 
-def _thin(free: FloatArray, clearance: float) -> FloatArray:
-    """Drop points until none is closer to another than ``clearance``."""
+def _thin(free: FloatArray, clearance: FloatArray) -> FloatArray:
+    """Drop points until none is closer to another than the mean ``clearance`` (k,) of both."""
     keep = np.ones(len(free), dtype=bool)
     if len(free):
-        for i, j in cKDTree(free).query_pairs(clearance, output_type="ndarray"):
+        pairs = cKDTree(free).query_pairs(clearance.max(), output_type="ndarray")
+        away = np.linalg.norm(free[pairs[:, 0]] - free[pairs[:, 1]], axis=1)
+        for i, j in pairs[away <= clearance[pairs].mean(axis=1)]:
             if keep[i] and keep[j]:
                 keep[j] = False
     return free[keep]
 
 
 def _smoothed(
-    region: shapely.Polygon, fixed: FloatArray, segments: IntArray, free: FloatArray, h: float
+    region: shapely.Polygon,
+    fixed: FloatArray,
+    segments: IntArray,
+    free: FloatArray,
+    size: float | Sizes,
 ) -> tuple[FloatArray, IntArray]:
     """Smooth, then repair the small angles that are left; Delaunay all along."""
     k = len(fixed)
     points, faces = _delaunay(region, fixed, segments, free)
     for _ in range(_SMOOTHING_ROUNDS):
-        points, faces = _delaunay(region, fixed, segments, _centroids(points, faces)[k:])
+        points, faces = _delaunay(region, fixed, segments, _centroids(points, faces, size)[k:])
     for _ in range(_REPAIR_ROUNDS):
         smallest = np.degrees(angles(points, faces)).min(axis=1)
         if smallest.min() > _ENOUGH_DEG and np.quantile(smallest, 0.01) > QUANTILE_ANGLE_DEG + 1:
             break
         bad = smallest < QUANTILE_ANGLE_DEG
-        free = _repair(points, faces[bad], k, h, region)
+        free = _repair(points, faces[bad], k, size, region)
         points, faces = _delaunay(region, fixed, segments, free)
-        points, faces = _delaunay(region, fixed, segments, _centroids(points, faces)[k:])
+        points, faces = _delaunay(region, fixed, segments, _centroids(points, faces, size)[k:])
     return points, faces
 
 
@@ -219,11 +251,16 @@ def _missing(segments: IntArray, faces: IntArray, n: int) -> IntArray:
     return np.asarray(segments[~np.isin(np.sort(segments, axis=1) @ [n, 1], present)])
 
 
-def _centroids(points: FloatArray, faces: IntArray) -> FloatArray:
-    """Move each vertex to the area-weighted mean of its faces' centroids."""
-    area = face_areas(points, faces)
+def _centroids(points: FloatArray, faces: IntArray, size: float | Sizes) -> FloatArray:
+    """Move each vertex to the mean of its faces' centroids, weighted by area over size^4.
+
+    So weighted, small faces beside large ones stay small (Gersho 1979); of one size, area decides.
+    """
+    centre = points[faces].mean(axis=1)
+    h = sizes_at(size, centre)
+    area = face_areas(points, faces) * (h.min(initial=np.inf) / h) ** 4
     weight = np.bincount(faces.ravel(), np.repeat(area, 3), minlength=len(points))
-    moment = np.repeat(area[:, None] * points[faces].mean(axis=1), 3, axis=0)
+    moment = np.repeat(area[:, None] * centre, 3, axis=0)
     total = np.column_stack(
         [np.bincount(faces.ravel(), column, minlength=len(points)) for column in moment.T]
     )
@@ -232,7 +269,7 @@ def _centroids(points: FloatArray, faces: IntArray) -> FloatArray:
 
 
 def _repair(
-    points: FloatArray, bad: IntArray, k: int, h: float, region: shapely.Polygon
+    points: FloatArray, bad: IntArray, k: int, size: float | Sizes, region: shapely.Polygon
 ) -> FloatArray:
     """Drop a free end of short edges, add circumcentres of large triangles; return free points."""
     p = points[bad]
@@ -241,14 +278,16 @@ def _repair(
     short = lengths.argmin(axis=1)
     rows = np.arange(len(bad))
     ends = np.maximum(bad[rows, short], bad[rows, (short + 1) % 3])
-    small = (radius < 0.75 * h) & (ends >= k)
+    small = (radius < 0.75 * sizes_at(size, p.mean(axis=1))) & (ends >= k)
     keep = np.ones(len(points), dtype=bool)
     keep[ends[small]] = False
     added = _circumcentres(p[~small])
     added = added[shapely.contains_xy(region, added)]
     if len(added):
         distance, _ = cKDTree(points[keep]).query(added)
-        added = _thin(added[distance > 0.45 * h], 0.45 * h)
+        clearance = 0.45 * sizes_at(size, added)
+        far = distance > clearance
+        added = _thin(added[far], clearance[far])
     return np.concatenate([points[k:][keep[k:]], added])
 
 

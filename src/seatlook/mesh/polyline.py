@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import reduce
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,32 @@ from seatlook.errors import InputError
 FloatArray = npt.NDArray[np.float64]
 
 _SAME = 1e-6  # m
+_FINE = 4.0  # steps of the finest size in which a varying size is summed up
+
+
+class Sizes(Protocol):
+    """An element size [m] that varies from place to place."""
+
+    @property
+    def finest(self) -> float:
+        """Smallest size anywhere [m]."""
+        ...
+
+    @property
+    def coarsest(self) -> float:
+        """Largest size anywhere [m]."""
+        ...
+
+    def __call__(self, points: FloatArray) -> FloatArray:
+        """Sizes (k,) [m] at points (k, 2) [m]."""
+        ...
+
+
+def sizes_at(size: float | Sizes, points: FloatArray) -> FloatArray:
+    """Element size (k,) [m] at points (k, 2), everywhere the same or not."""
+    if isinstance(size, float | int):
+        return np.full(len(points), float(size))
+    return size(points)
 
 
 def distance_to_polyline(points: FloatArray, line: FloatArray) -> FloatArray:
@@ -85,10 +112,11 @@ def length(polyline: FloatArray) -> float:
     return float(reduce(np.hypot, np.diff(polyline, axis=0).T).sum())
 
 
-def resample(polyline: FloatArray, spacing: float) -> FloatArray:
+def resample(polyline: FloatArray, spacing: float | Sizes) -> FloatArray:
     """Return points of equal arc length on an open polyline (k, d), both ends kept.
 
-    The step is the length divided by the nearest whole number of ``spacing`` (at least one).
+    The step is the length divided by the nearest whole number of ``spacing`` (at least one). Where
+    that varies, so do the steps.
 
     Examples
     --------
@@ -96,14 +124,53 @@ def resample(polyline: FloatArray, spacing: float) -> FloatArray:
     array([0., 1., 2., 3., 3.])
     """
     s = arc_length(polyline)
-    if not (spacing > 0 and s[-1] > 0):
-        raise InputError.single(
-            "resample", got=f"length {s[-1]:g}, spacing {spacing:g}", expected="numbers above 0"
-        )
-    at = np.linspace(0.0, s[-1], max(1, round(s[-1] / spacing)) + 1)
+    at = _places(polyline, s, spacing)
     points = np.column_stack([np.interp(at, s, column) for column in polyline.T])
     points[[0, -1]] = polyline[[0, -1]]  # bit for bit, so that neighbours share their corners
     return points
+
+
+def resampled_steps(polyline: FloatArray, spacing: float | Sizes) -> FloatArray:
+    """Return how far (m,) [m] along the polyline the points of ``resample`` are apart.
+
+    Examples
+    --------
+    >>> resampled_steps(np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]]), 0.9)
+    array([1., 1., 1., 1.])
+    """
+    s = arc_length(polyline)
+    at = _places(polyline, s, spacing)
+    if isinstance(spacing, float | int):
+        return np.full(len(at) - 1, s[-1] / (len(at) - 1))
+    return np.diff(at)
+
+
+def _places(polyline: FloatArray, s: FloatArray, spacing: float | Sizes) -> FloatArray:
+    """Arc lengths [m] at which a polyline with arc lengths ``s`` of its points is sampled."""
+    finest = spacing if isinstance(spacing, float | int) else spacing.finest
+    if not (finest > 0 and s[-1] > 0):
+        raise InputError.single(
+            "resample", got=f"length {s[-1]:g}, spacing {finest:g}", expected="numbers above 0"
+        )
+    if isinstance(spacing, float | int):
+        return np.linspace(0.0, s[-1], max(1, round(s[-1] / spacing)) + 1)
+    fine = np.linspace(0.0, s[-1], max(1, round(_FINE * s[-1] / finest)) + 1)
+    size = spacing(np.column_stack([np.interp(fine, s, column) for column in polyline.T]))
+    return even_places(fine, size)
+
+
+def even_places(at: FloatArray, spacing: FloatArray) -> FloatArray:
+    """Places [m] from the first to the last of ``at`` (k,), as far apart as ``spacing`` (k,) says.
+
+    Examples
+    --------
+    >>> even_places(np.array([0.0, 1.0, 2.0]), np.array([0.25, 0.5, 0.5])).round(3)
+    array([0.   , 0.312, 0.625, 0.938, 1.4  , 2.   ])
+    """
+    density = 0.5 * (1.0 / spacing[1:] + 1.0 / spacing[:-1])
+    counted = np.concatenate([[0.0], np.cumsum(np.diff(at) * density)])
+    numbers = np.linspace(0.0, counted[-1], max(1, round(counted[-1])) + 1)
+    return np.interp(numbers, counted, at)
 
 
 def points_at(line: FloatArray, places: FloatArray) -> FloatArray:

@@ -22,6 +22,8 @@ from seatlook.model.stage import Stage
 
 # What [accept] can limit besides the figures of a zone: its worst score over textures and rigs.
 SCORE_MEASURES = ("vwi", "equivalent_height_mm")
+FIRST_SIZE = 0.007  # [m] of a mesh that is made before it is known where it is to be finer
+TOLERANCES = (0.01, 0.5)  # [1] of zone means: finer no mesh gets in hours, coarser says nothing
 ELEMENT_SIZES = (5e-4, 0.1)  # [m] from fine to coarse: below is thread, above no seat is left
 LARGEST_SEED = 2**31
 # Contradictions that [check] can let pass.
@@ -231,6 +233,8 @@ class Scene:
     hem : whether seam allowances are folded inward; if not, seams are free hinges
     allowed : contradictions out of ``ALLOWED`` that a check lets pass
     element_sizes : panel name -> float [m]     of panels that are meshed finer or coarser
+    tolerance : float [1]       of zone means of W2, from which the mesh follows; None: it is
+        ``element_size``, which is that of the first mesh only where there is a tolerance
     element_size : float [m]; smallest_notch : float [m], below which reading closed cuts
     c_threshold : float [1/m]
     textures : name -> Appearance, or None for the panels' own materials
@@ -261,6 +265,7 @@ class Scene:
     element_sizes: MappingProxyType[str, float] = field(
         default_factory=lambda: MappingProxyType({})
     )
+    tolerance: float | None = None
     smallest_notch: float = 0.005
     seed: int = 0
     curvature: CurvatureMode = "tensor"
@@ -275,6 +280,11 @@ class Scene:
             f"{len(self.pattern.seams)} seams, {len(self.textures)} textures, "
             f"{len(self.rigs)} rigs)"
         )
+
+    @property
+    def mesh_asked_by(self) -> str:
+        """Which field the mesh follows from: ``tolerance`` where there is one."""
+        return "element_size" if self.tolerance is None else "tolerance"
 
     def stage_of(self, seam: str) -> Stage:
         """Return the stage in which a seam closes: the one that names it, else the first."""

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from seatlook._version import __version__
-from seatlook.chain.shell_maps import PICTURE, DrawnState
+from seatlook.chain.shells.maps import PICTURE, DrawnState
 from seatlook.model.table import Table
 from seatlook.report.page.data import PageData
 from seatlook.report.page.types import CloseUp, WrinkleSection
@@ -46,7 +46,7 @@ def write_shell_page(
 
     Parameters
     ----------
-    figures : of the state, from ``seatlook.chain.shell_states.state_figures``
+    figures : of the state, from ``seatlook.chain.shells.states.state_figures``
     asked : what was asked for -> its value, such as curvature mode and threshold
     notes : what the reader of the file said
     """

@@ -89,6 +89,15 @@ def _of_mesh(found: Resolution) -> Iterator[Condition]:
         limit=SHARPEST,
         unit="degrees",
     )
+    if found.error is not None and found.tolerance is not None:
+        yield Condition(
+            figure="w2_error",
+            meaning="mesh error of zone means of W2",
+            value=100.0 * found.error,
+            limit=100.0 * found.tolerance,
+            unit="%",
+        )
+        return
     for wave in found.waves:
         yield Condition(
             figure=f"element_size/{wave.material}",

@@ -23,6 +23,8 @@ PER_WAVE = 8.0  # elements on the shortest wrinkle of a fabric on its foam
 SHARPEST = 45.0  # deg, of the fold between neighbours: a radius of 1.3 elements
 # Recovered curvature of a wave: relative error 3.9 (h / lambda)^2, measured at 8 and 16 elements.
 CURVATURE_ERROR = 3.9
+# Figures of a result that was solved to a tolerance: what was asked for, and the error measured.
+ASKED, REACHED = "w2_tolerance", "w2_error"
 _WORK = 2.6  # time to solve over element size, as a power: docs/charts/scaling.csv
 _MESHED = 0.02  # by which a mesh may miss the size it is asked for: sides hold whole elements
 
@@ -145,7 +147,8 @@ class Resolution:
         return replace(self, error=error, tolerance=tolerance)
 
     def _coarseness(self) -> Iterator[str]:
-        yield from (wave.sentence for wave in self.waves if not wave.resolved)
+        if self.tolerance is None:
+            yield from (wave.sentence for wave in self.waves if not wave.resolved)
         if self.folds:
             first, count = self.folds[0], len(self.folds)
             many = f"{count} edges are" if count > 1 else "1 edge is"
@@ -168,15 +171,21 @@ def resolution(solution: Solution) -> Resolution:
 
     It is where it is at rest, every material has ``PER_WAVE`` elements on the shortest wrinkle that
     it makes on its foam, and no edge inside a panel is folded by more than ``SHARPEST`` degrees.
-    Without foam no wavelength is known, and folds decide alone.
+    Solved to a tolerance, the error that was measured counts instead of elements to a wave, which
+    are then those where the cover is bent. Without foam no wavelength is known, and folds decide
+    alone.
     """
     cover = solution.cover
     sides = inner_sides(cover.faces)
     angle = np.degrees(_turned(cover, solution.positions, sides))
     sharp = np.flatnonzero(angle > SHARPEST)
     sharp = sharp[np.argsort(-angle[sharp], kind="stable")]
-    waves = expected_waves(cover)
-    coarse = {panel for wave in waves if not wave.resolved for panel in wave.panels}
+    asked = solution.figures.get(ASKED)
+    bent = np.linalg.norm(solution.strain_top - solution.strain_bottom, axis=(1, 2))
+    waves = expected_waves(cover, None if asked is None else bent / cover.thickness)
+    coarse = {
+        panel for wave in waves if asked is None and not wave.resolved for panel in wave.panels
+    }
     unresolved = np.isin(cover.panel, [cover.panel_names.index(name) for name in coarse])
     unresolved[sides[sharp].ravel() // 3] = True
     return Resolution(
@@ -185,17 +194,23 @@ def resolution(solution: Solution) -> Resolution:
         folds=tuple(_fold(solution, sides[k], float(angle[k])) for k in sharp),
         largest_fold=float(angle.max(initial=0.0)),
         unresolved=unresolved,
+        error=solution.figures.get(REACHED),
+        tolerance=asked,
     )
 
 
-def expected_waves(cover: Cover) -> tuple[Waves, ...]:
+def expected_waves(cover: Cover, weight: FloatArray | None = None) -> tuple[Waves, ...]:
     """The shortest wrinkle of each material of a cover on foam against its elements.
 
     Known before anything is solved. None without foam.
+
+    Parameters
+    ----------
+    weight : (m,) [1]   by which elements of a panel count beside their area, where sizes vary
     """
     if cover.foam is None:
         return ()
-    size = _panel_sizes(cover)
+    size = _panel_sizes(cover, weight)
     fabrics = {m.name: m.fabric for m in cover.materials}
     result = []
     for name, fabric in fabrics.items():
@@ -216,9 +231,14 @@ def largest_size(wavelength: float) -> float:
     return int(1e4 * wavelength / PER_WAVE) / 10
 
 
-def _panel_sizes(cover: Cover) -> FloatArray:
+def _panel_sizes(cover: Cover, weight: FloatArray | None) -> FloatArray:
     """Element size (p,) [m] of each panel, see ``Waves``."""
     count = len(cover.panel_names)
+    if weight is not None:
+        share = cover.rest_area * np.maximum(weight, 1e-9)
+        whole = np.maximum(np.bincount(cover.panel, share, count), 1e-300)
+        wrinkled = np.bincount(cover.panel, share * cover.rest_area, count) / whole
+        return np.asarray(np.sqrt(wrinkled * 4.0 / np.sqrt(3.0)))
     area = np.bincount(cover.panel, cover.rest_area, count)
     mean = area / np.maximum(np.bincount(cover.panel, minlength=count), 1)
     return np.asarray(np.sqrt(mean * 4.0 / np.sqrt(3.0)))

@@ -28,9 +28,9 @@ class DemoChoices(TypedDict, total=False):
     shape's own; ``ease``: seam -> share by which one line is longer; ``short``: panel -> share by
     which it is narrower across its grain; ``tension``: share by which all panels are smaller;
     ``material``, and ``insert`` for the middle panels: supplied names; ``element_size_mm``,
-    ``seed``; ``surface_size`` [m]: edge length of design surface and foam, which stay the same
-    however the cover is meshed; 6 mm for the demo, else 8 mm times the scale; ``progress`` is
-    called panel by panel.
+    or ``tolerance_percent`` instead, ``seed``; ``surface_size`` [m]: edge length of design surface
+    and foam, which stay the same however the cover is meshed; 6 mm for the demo, else 8 mm times
+    the scale; ``progress`` is called panel by panel.
     """
 
     shape: str
@@ -42,6 +42,7 @@ class DemoChoices(TypedDict, total=False):
     material: str
     insert: str | None
     element_size_mm: float
+    tolerance_percent: float | None
     seed: int
     surface_size: float
     progress: Progress
@@ -82,6 +83,7 @@ def write_demo(out: Path | str, **choices: Unpack[DemoChoices]) -> Path:
         material=material,
         panels=dict.fromkeys(middle, insert),
         element_size_mm=choices.get("element_size_mm", 7.0),
+        tolerance_percent=choices.get("tolerance_percent"),
         seed=choices.get("seed", 0),
         textures=("black-leather", "bright-leather", "suede"),
         force=True,

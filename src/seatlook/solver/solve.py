@@ -69,8 +69,8 @@ def solve(
     ----------
     settings : method, time step and iterations
     start : earlier solution; the process goes on after its stage. From another mesh of the same
-        panels only the shape is taken over, by quadratics: a coarse solution at rest saves a fine
-        mesh the way there
+        panels the shape is taken over, by quadratics, and what its fabrics have gone through: a
+        coarse solution at rest saves a fine mesh the way there
     progress : called after every step
     snapshot : called with the state at the end of every stage
     shape : called with stage, time [s] and positions (n, 3) [m] after every time step; the

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from seatlook.chain.shell_states import wrinkle_states
+from seatlook.chain.shells.states import wrinkle_states
 
 DATA = Path(__file__).parents[2] / "data" / "lsdyna"
 

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from seatlook import wrinkle
-from seatlook.chain.shell_states import ShellCriteria, shell_indices
+from seatlook.chain.shells.states import ShellCriteria, shell_indices
 from seatlook.errors import InputError
 from seatlook.io.export.writers import export_cover
 from seatlook.io.lsdyna.deck.reader import read_keyword

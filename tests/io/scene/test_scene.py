@@ -155,9 +155,42 @@ def test_paths_are_seen_from_the_scene(load, folder, monkeypatch):
 def test_unknown_key(refused):
     got, line = refused(("element_size_mm", "elementsize_mm"))
     assert got == [
-        f"scene.toml:{line('[mesh]')}: mesh.element_size_mm: got nothing, expected a number",
+        f"scene.toml:{line('[mesh]')}: mesh.element_size_mm: got nothing, expected a number "
+        "(or tolerance_percent, and the mesh follows from the error it may have)",
         f"scene.toml:{line('elementsize_mm')}: mesh.elementsize_mm: got unknown key, expected one "
-        "of element_size_mm, smallest_notch_mm, seed (did you mean 'element_size_mm'?)",
+        "of element_size_mm, tolerance_percent, smallest_notch_mm, seed "
+        "(did you mean 'element_size_mm'?)",
+    ]
+
+
+def test_a_tolerance_takes_the_place_of_an_element_size(load, folder):
+    load()
+    text = EXAMPLE.replace("element_size_mm = 6.0", "tolerance_percent = 5")
+    (folder / "scene.toml").write_text(text.replace("element_size_mm = 4.0", ""))
+    assert load_scene(folder / "scene.toml").tolerance == pytest.approx(0.05)
+
+
+def test_a_tolerance_beside_a_size_is_refused(refused):
+    got, line = refused(("element_size_mm = 6.0", "element_size_mm = 6.0\ntolerance_percent = 5"))
+    assert got == [
+        f"scene.toml:{line('tolerance_percent')}: mesh.tolerance_percent: got element_size_mm as "
+        "well, expected one of them (delete one: with a tolerance the mesh follows from the error "
+        "it may have)",
+        f"scene.toml:{line('element_size_mm = 4.0')}: panel.CENTER.element_size_mm: got a size, "
+        "expected none beside mesh.tolerance_percent (delete it: the mesh follows from the "
+        "tolerance)",
+    ]
+
+
+@pytest.mark.parametrize("percent", ["0", "0.5", "80", "-5"])
+def test_a_tolerance_out_of_bounds_is_refused(refused, percent):
+    got, line = refused(
+        ("element_size_mm = 6.0", f"tolerance_percent = {percent}"),
+        ("element_size_mm = 4.0", ""),
+    )
+    assert got == [
+        f"scene.toml:{line('tolerance_percent')}: mesh.tolerance_percent: got {percent}, "
+        "expected 1 to 50"
     ]
 
 

@@ -6,7 +6,7 @@ import pytest
 from seatlook import model
 from seatlook.errors import InputError
 from seatlook.solver import solve
-from seatlook.solver.process.transfer import transfer
+from seatlook.solver.process.transfer import transfer, transfer_peaks
 from support.covers import cover, flat_foam, sheet
 
 
@@ -40,6 +40,18 @@ def test_waves_arrive_to_third_order():
         errors.append(np.sqrt(np.mean((transfer(coarse, wave[0], fine) - wave[1]) ** 2)))
     assert errors[1] < 5e-3
     assert np.log2(errors[0] / errors[1]) > 2.5
+
+
+def test_what_faces_have_gone_through_arrives_panel_by_panel():
+    coarse, fine = two(0.02), two(0.013)
+    centre = [c.rest[c.faces].mean(axis=1) for c in (coarse, fine)]
+    peaks = np.column_stack([centre[0][:, 0], coarse.panel - 2.0])
+    peaks[centre[0][:, 1] > 0.1, 0] = -np.inf
+    got = transfer_peaks(coarse, peaks, fine)
+    np.testing.assert_array_equal(got[:, 1], fine.panel - 2.0)
+    below = centre[1][:, 1] < 0.08
+    np.testing.assert_allclose(got[below, 0], centre[1][below, 0], atol=0.015)
+    assert np.isneginf(got[centre[1][:, 1] > 0.12, 0]).all()
 
 
 def test_other_panels_are_refused():

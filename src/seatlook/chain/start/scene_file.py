@@ -100,6 +100,7 @@ class SceneDraft:
     design : file of the surface that the shape is compared with, in mm and z up, if there is one
     hooks, frames, poses : see :class:`seatlook.model.Scene`
     element_size_mm, seed : of the mesh
+    tolerance_percent : of zone means, from which the mesh follows instead of a size
     textures : rows of the gallery
     bulbs : rigs of one bulb each, the first to the left of the seat, the second to the right
     remarks : comments at the top
@@ -121,6 +122,7 @@ class SceneDraft:
     frames: tuple[Frame, ...] = ()
     poses: Mapping[str, Pose]
     element_size_mm: float
+    tolerance_percent: float | None = None
     seed: int = 0
     textures: tuple[str, ...] = TEXTURES
     bulbs: tuple[str, ...] = ("bulb",)

@@ -49,7 +49,7 @@ class SceneChoices(TypedDict, total=False):
     ``material`` of all panels but those in ``panels`` (panel -> material) and ``foam_material``:
     supplied names or files. ``wires``: curves file of the wires in the foam. ``foam_unit`` and
     ``foam_up`` of the foam's file; by its format and size if not given. ``foam_mending`` of its
-    surface. ``element_size_mm`` and
+    surface. ``element_size_mm``, or ``tolerance_percent`` instead, and
     ``seed`` of the mesh; ``name``, ``textures``, ``bulbs`` (rigs) and ``remarks`` (comments at the
     top) of the scene. ``force``: write over a scene that is there.
     """
@@ -62,6 +62,7 @@ class SceneChoices(TypedDict, total=False):
     foam_up: Up | None
     foam_mending: Mending
     element_size_mm: float | None
+    tolerance_percent: float | None
     seed: int
     name: str
     textures: tuple[str, ...]
@@ -208,6 +209,7 @@ def _scene_of(
         frames=tuple(border.frame(COVER) for border in lie.borders),
         poses=lie.poses,
         element_size_mm=choices.get("element_size_mm") or size,
+        tolerance_percent=choices.get("tolerance_percent"),
         seed=choices.get("seed", 0),
         textures=choices.get("textures", TEXTURES),
         bulbs=choices.get("bulbs", ("bulb",)),

@@ -24,11 +24,12 @@ from seatlook.io.schema import (
     Texts,
 )
 from seatlook.io.surface.axes import UNITS, UPS
-from seatlook.model.scene import ALLOWED, ELEMENT_SIZES, LARGEST_SEED, SCORE_MEASURES
+from seatlook.model.scene import ALLOWED, ELEMENT_SIZES, LARGEST_SEED, SCORE_MEASURES, TOLERANCES
 from seatlook.model.stage import LONGEST, RAMPS, SHORTEST
 from seatlook.wrinkle import INDICES
 
 AS_BUILT = "as built"
+LOWEST_PERCENT, HIGHEST_PERCENT = (100 * share for share in TOLERANCES)
 FINEST_MM, COARSEST_MM = (1e3 * size for size in ELEMENT_SIZES)
 _NAME = Text(required=True)
 
@@ -76,7 +77,8 @@ KEYS: dict[str, Kind] = {
     "check": Table({"allow": Texts(choices=ALLOWED, default=())}),
     "mesh": Table(
         {
-            "element_size_mm": Number(low=FINEST_MM, high=COARSEST_MM, scale=MM, required=True),
+            "element_size_mm": Number(low=FINEST_MM, high=COARSEST_MM, scale=MM),
+            "tolerance_percent": Number(low=LOWEST_PERCENT, high=HIGHEST_PERCENT, scale=0.01),
             "smallest_notch_mm": Number(low=0, high=100, scale=MM, default=5.0),
             "seed": Integer(high=LARGEST_SEED, default=0),
         },

@@ -50,6 +50,7 @@ from seatlook.model import (
     Thread,
 )
 from seatlook.model.criteria import DEFAULT_THRESHOLD
+from seatlook.model.scene import FIRST_SIZE
 
 _AXES = {
     sign + letter: (1.0 if sign == "+" else -1.0) * np.eye(3)[number]
@@ -124,7 +125,8 @@ class _Reader:
             digest=self.files.digest(),
             hem=row["hem"],
             allowed=row["check"]["allow"],
-            element_size=row["mesh"]["element_size_mm"],
+            element_size=row["mesh"]["element_size_mm"] or FIRST_SIZE,
+            tolerance=row["mesh"]["tolerance_percent"],
             element_sizes=MappingProxyType(
                 {n: size for n, p in row["panel"].items() if (size := p["element_size_mm"])}
             ),
@@ -155,6 +157,7 @@ class _Reader:
             "rigs": make_rigs(document, row["rig"], self.files),
             "cameras": make_cameras(document, row["camera"], foam),
         }
+        _check_mesh(document, row)
         check_wires(document, row, pattern, foam)
         check_overlap(document, pattern, parts["placement"])
         check_distance(document, parts["placement"], foam)
@@ -330,6 +333,29 @@ class _Reader:
             return None
         u, v = (_AXES[axis] for axis in row["axes"])
         return np.column_stack([u, v, np.cross(u, v)])
+
+
+def _check_mesh(document: Document, row: dict[str, Any]) -> None:
+    """Report a mesh that is asked for in two ways, or in none."""
+    if not isinstance(mesh := document.data.get("mesh"), dict):
+        return  # it is missing, or no table, which is reported
+    size, tolerance = (name in mesh for name in ("element_size_mm", "tolerance_percent"))
+    if not size and not tolerance:
+        document.report(
+            ("mesh", "element_size_mm"), "nothing", "a number",
+            "or tolerance_percent, and the mesh follows from the error it may have",
+        )  # fmt: skip
+    elif size and tolerance:
+        document.report(
+            ("mesh", "tolerance_percent"), "element_size_mm as well", "one of them",
+            "delete one: with a tolerance the mesh follows from the error it may have",
+        )  # fmt: skip
+    sized = [name for name, panel in row["panel"].items() if panel["element_size_mm"] is not None]
+    for name in sized if tolerance else ():
+        document.report(
+            ("panel", name, "element_size_mm"), "a size", "none beside mesh.tolerance_percent",
+            "delete it: the mesh follows from the tolerance",
+        )  # fmt: skip
 
 
 def _thread(row: dict[str, Any]) -> Thread:

@@ -17,7 +17,7 @@ from seatlook.report.sections.parameters import written
 
 _FEW = 4  # values of an array that are written out
 # Settings of a scene, and those of its parts that are named alike in the files.
-_SETTINGS = ("element_size", "smallest_notch", "seed", "curvature", "c_threshold", "hem", "allowed")
+_SETTINGS = ("smallest_notch", "seed", "curvature", "c_threshold", "hem", "allowed")
 _PARTS = MappingProxyType(
     {"stages": "stage", "hooks": "hook", "frames": "frame", "boxes": "zone", "limits": "accept"}
 )
@@ -91,7 +91,7 @@ def _merged(rows: list[tuple[Any, ...]], panels: set[str]) -> Iterator[tuple[Any
 
 def _entries(scene: Scene) -> Iterator[Entry]:
     """All of a scene but what is looked at and how, which a comparison takes from the first."""
-    for name in _SETTINGS:
+    for name in (scene.mesh_asked_by, *_SETTINGS):
         yield _leaf(name, getattr(scene, name), name)
     for field, head in _PARTS.items():
         for count, part in enumerate(getattr(scene, field), 1):

@@ -12,14 +12,16 @@ from seatlook.io.parameter_text import block_of, fields_of, file_key, line_of
 from seatlook.model import Curve, Hysteresis, Scene
 from seatlook.model.table import Table, number
 
-_SCENE = ("element_size", "smallest_notch", "seed", "curvature", "c_threshold")
+_SCENE = ("smallest_notch", "seed", "curvature", "c_threshold")
 Row = tuple[str, str, str | None]
 
 
 def parameter_tables(scene: Scene) -> MappingProxyType[str, Table]:
     """List the scene's settings, its cover materials, foam and textures, each with its source."""
     tables: dict[str, list[Row]] = {
-        "scene": [(*_entry(name, getattr(scene, name)), None) for name in _SCENE]
+        "scene": [
+            (*_entry(name, getattr(scene, name)), None) for name in (scene.mesh_asked_by, *_SCENE)
+        ]
     }
     for m in {m.name: m for m in scene.materials.values()}.values():
         tables[f"cover {m.name}"] = [*_rows(m.fabric, m.source), *_rows(m.appearance, m.source)]
@@ -41,7 +43,9 @@ def parameter_toml(scene: Scene) -> MappingProxyType[str, str]:
     """The same as TOML in the files' units, with every digit, to copy into a scene or material."""
     blocks = {
         "scene": "[mesh]\n"
-        + "".join(line_of(n, getattr(scene, n)) for n in ("element_size", "smallest_notch", "seed"))
+        + "".join(
+            line_of(n, getattr(scene, n)) for n in (scene.mesh_asked_by, "smallest_notch", "seed")
+        )
         + "\n[wrinkle]\n"
         + "".join(line_of(n, getattr(scene, n)) for n in ("curvature", "c_threshold"))
     }

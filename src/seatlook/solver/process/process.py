@@ -34,7 +34,7 @@ from seatlook.solver.process.settings import DEFAULT, SolverSettings
 from seatlook.solver.process.stages import Step
 from seatlook.solver.process.state import OfPositions, StatePotential, masses
 from seatlook.solver.process.ties import Ties
-from seatlook.solver.process.transfer import transfer
+from seatlook.solver.process.transfer import transfer, transfer_peaks
 
 _CARRIED_VELOCITY = 0.5  # share of the velocity that a step hands to the next
 _STEP_TOLERANCE = 0.02  # out-of-balance force over mean elastic force that ends a time step
@@ -130,6 +130,9 @@ class Process:
         self._fresh, self.time = False, time
         if not np.array_equal(start.cover.faces, self.cover.faces):
             np.copyto(self.x, transfer(start.cover, start.positions, self.cover))
+            if start.strain_peak is not None:
+                peaks = transfer_peaks(start.cover, start.strain_peak, self.cover)
+                self.sheet.membrane.remember(peaks)
             return
         np.copyto(self.x, start.positions)
         np.copyto(self.v, start.velocities)

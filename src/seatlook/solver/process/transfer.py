@@ -47,6 +47,16 @@ def transfer(source: Cover, values: FloatArray, target: Cover) -> FloatArray:
     return out
 
 
+def transfer_peaks(source: Cover, peaks: FloatArray, target: Cover) -> FloatArray:
+    """Strains (m, k) that faces have gone through, of the nearest face of the same panel."""
+    out = np.empty((len(target.faces), peaks.shape[1]))
+    centre, wanted = (c.rest[c.faces].mean(axis=1) for c in (source, target))
+    for panel in range(len(target.panel_names)):
+        old, new = np.flatnonzero(source.panel == panel), np.flatnonzero(target.panel == panel)
+        out[new] = peaks[old[cKDTree(centre[old]).query(wanted[new])[1]]]
+    return out
+
+
 def _vertices(cover: Cover, panel: int) -> IntArray:
     return np.unique(cover.faces[cover.panel == panel])
 

@@ -10,7 +10,7 @@ from seatlook.chain.assess import Assessment, assess
 from seatlook.chain.draw import Canvas, Drawn, draw_distortion, draw_maps
 from seatlook.chain.files import write_findings
 from seatlook.chain.framing import fitted_view, side_light
-from seatlook.chain.shell_states import ShellCriteria, ShellWrinkles
+from seatlook.chain.shells.states import ShellCriteria, ShellWrinkles
 from seatlook.model import Camera, Criteria, Rig, Shells, Strains
 from seatlook.model.progress import Progress
 from seatlook.shells.cover import ShellCover

@@ -1,0 +1,283 @@
+"""Solve to a tolerance: on a mesh that is fine where the cover wrinkles, begun from a coarser one.
+
+The coarser one is solved as ever, or to a larger tolerance, in turn. Its wrinkles tell where the
+finer one is fine, and the difference between both tells the error.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+import shapely
+
+from seatlook import io
+from seatlook.assembly import assemble, with_mesh
+from seatlook.assembly.grading import Grading
+from seatlook.chain.assess import assess
+from seatlook.chain.companions import ZoneMean, with_companions
+from seatlook.chain.files import earlier_result
+from seatlook.chain.timeline import solve_in_stages
+from seatlook.errors import InputError
+from seatlook.model import Cover, FloatArray, Scene, Solution, criteria_of
+from seatlook.model.progress import Progress, silent
+from seatlook.model.scene import FIRST_SIZE, TOLERANCES
+from seatlook.model.zones import FREE_EDGE
+from seatlook.results.needed_sizes import SMALL, needed_sizes, zone_sizes
+from seatlook.results.resolution import ASKED, CURVATURE_ERROR, REACHED
+from seatlook.solver import SolverSettings, foam_wavelength, solve
+
+BEFORE = "0-coarser.npz"  # beside the stages: what the mesh was made from
+_TWICE = 2.0  # as large are the elements of the mesh before
+_COARSEST = 0.010  # m; the shape of a seat needs no finer
+_APART = 1.4  # times as large elements, from which a difference of two meshes is one of sizes
+_ORDER = 1.5  # at which means converge: 2 where there are waves, 1 at the kink of a hooked seam
+_BEFORE = 0.35  # of the work is done on the meshes before, as an estimate
+_SECONDS = 1e-3  # CPU seconds for a vertex: docs/charts/tolerance.csv
+_ADDED = ("steps", "iterations", "cpu_seconds")
+
+
+def finest_size(scene: Scene) -> float:
+    """Element size [m] where a cover wrinkles that is to keep the scene's tolerance."""
+    wave = min(foam_wavelength(m.fabric, scene.foam.material) for m in scene.materials.values())
+    return wave * math.sqrt(_asked(scene) / CURVATURE_ERROR)
+
+
+def coarsest_size(scene: Scene) -> float:
+    """Element size [m] where nothing wrinkles, and of the first mesh."""
+    return float(np.clip(_TWICE * finest_size(scene), FIRST_SIZE, _COARSEST))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Forecast:
+    """What a tolerance takes, before it is known how much of the cover wrinkles.
+
+    Parameters
+    ----------
+    tolerance : float [1]
+    finest, coarsest : float [m]     element size where it wrinkles, and where it does not
+    vertices : of the last mesh if nothing wrinkles, and if everything does
+    cpu_seconds : likewise, of all meshes, as an estimate
+    """
+
+    tolerance: float
+    finest: float
+    coarsest: float
+    vertices: tuple[int, int]
+    cpu_seconds: tuple[float, float]
+
+    @property
+    def sentence(self) -> str:
+        """What is to be expected, in words."""
+        fewest, most = self.vertices
+        least, longest = self.cpu_seconds
+        return (
+            f"for {100 * self.tolerance:g} %: elements of {1e3 * self.finest:.2g} mm where it "
+            f"wrinkles, {1e3 * self.coarsest:.2g} mm elsewhere; {fewest:,} to {most:,} vertices, "
+            f"about {least:.0f} to {longest:.0f} CPU seconds, as much of it wrinkles"
+        )
+
+
+def forecast(scene: Scene) -> Forecast:
+    """Say what a scene's tolerance takes, from its area and wavelength alone.
+
+    Raises
+    ------
+    InputError   the scene names no tolerance
+    """
+    area = sum(shapely.Polygon(panel.outline).area for panel in scene.pattern.panels)
+    finest, coarsest = finest_size(scene), coarsest_size(scene)
+    sizes = coarsest, min(finest, coarsest)
+    fewest, most = (round(area / (size**2 * math.sqrt(0.75))) for size in sizes)
+    first = _SECONDS * fewest
+    return Forecast(
+        tolerance=_asked(scene),
+        finest=sizes[1],
+        coarsest=coarsest,
+        vertices=(fewest, most),
+        cpu_seconds=(first + 0.5 * first, first + _SECONDS * most),
+    )
+
+
+def coarser(scene: Scene) -> Scene:
+    """The scene of the mesh before: of one size, or of four times the tolerance."""
+    first, looser = coarsest_size(scene), _TWICE**2 * _asked(scene)
+    if _TWICE * _APART * finest_size(scene) < first and looser <= TOLERANCES[1]:
+        return with_mesh(scene, tolerance=looser)
+    return with_mesh(scene, element_size=first)
+
+
+def solve_scene(
+    scene: Scene,
+    cover: Cover | None = None,
+    *,
+    settings: SolverSettings | None = None,
+    progress: Progress = silent,
+) -> Solution:
+    """Solve a scene with zone means of W2 to its tolerance, or at its element size.
+
+    Parameters
+    ----------
+    cover : of the scene at its element size, if there is one already
+
+    Returns
+    -------
+    Solution
+        On the last mesh. The mesh error of zones is among the figures; history and cost are those
+        of all meshes.
+
+    Raises
+    ------
+    InputError, SolverError   as ``assemble`` and ``solve``
+    """
+    chosen = settings or SolverSettings()
+    if scene.tolerance is None:
+        return _solved(cover or assemble(scene), None, chosen, progress)
+    before = solve_scene(coarser(scene), settings=chosen, progress=_part(progress, 0.0, _BEFORE))
+    fine = _solved(local_cover(scene, before), before, chosen, _part(progress, _BEFORE, 1.0))
+    return _together(before, with_error(scene, fine, before))
+
+
+def solve_scene_in_stages(
+    scene: Scene,
+    cover: Cover,
+    folder: Path,
+    *,
+    again_from: str | None = None,
+    resume: bool = False,
+    progress: Progress = silent,
+) -> Solution:
+    """Solve as ``solve_in_stages`` does, on the mesh that a tolerance asks for if there is one.
+
+    The stages are those of the last mesh, which is sewn and hooked from its start. What it was
+    made from is kept beside them. A stage that is done again keeps the mesh.
+
+    Parameters
+    ----------
+    cover : of the scene at its element size
+    folder, again_from, resume : see ``chain.timeline``
+    """
+    if scene.tolerance is None:
+        return _in_stages(cover, folder, again_from, resume, progress)
+    path = folder / BEFORE
+    before = earlier_result(coarser(scene), path)
+    made_from = io.read_result(path) if again_from is not None and path.exists() else before
+    if before is None:
+        before = solve_scene(coarser(scene), progress=_part(progress, 0.0, _BEFORE))
+    if made_from is None:
+        made_from = before
+        io.write_result(before, path)
+    fine = _in_stages(
+        local_cover(scene, made_from), folder, again_from, resume, _part(progress, _BEFORE, 1.0)
+    )
+    return with_error(scene, fine, before)
+
+
+def local_cover(scene: Scene, before: Solution) -> Cover:
+    """Mesh a scene as fine as a result on a coarser mesh says that its tolerance asks for."""
+    cover = before.cover
+    # Free edges are left out of every statement.
+    inner = ~np.isin(cover.zone, [k for k, z in enumerate(cover.zone_names) if z == FREE_EDGE])
+    w2 = np.where(inner, _w2(scene, before), 0.0)
+    sizes = needed_sizes(cover, w2, _asked(scene), coarsest_size(scene))
+    gradings = {}
+    for panel, name in enumerate(cover.panel_names):
+        own = np.unique(cover.faces[cover.panel == panel])
+        gradings[name] = Grading(cover.uv[own], sizes[own])
+    return assemble(scene, sizes=gradings)
+
+
+def with_error(scene: Scene, fine: Solution, coarse: Solution) -> Solution:
+    """Measure the mesh error of a result by one on a coarser mesh, and keep it among its figures.
+
+    A zone errs by the difference of its means, extrapolated. Where both meshes are alike, as they
+    are where little wrinkles, it errs by the estimate that sized them. The tolerance is set against
+    the error over all zones but free edges: the root mean square of their errors over their means,
+    or over 0.02 if that is more, weighted by area.
+    """
+    criteria = criteria_of(fine.cover.materials, scene.curvature, default=scene.c_threshold)
+    rows, before = (
+        {row.zone: row for row in assess(solution, criteria).zones} for solution in (fine, coarse)
+    )
+    size, estimate = zone_sizes(fine.cover, _w2(scene, fine))
+    size_before, _ = zone_sizes(coarse.cover, _w2(scene, coarse))
+    zones = []
+    for name, row in rows.items():
+        error = estimate[name] * row["w2_mean"]
+        ratio = size_before.get(name, 0.0) / size[name]
+        if ratio >= _APART:
+            error = abs(row["w2_mean"] - before[name]["w2_mean"]) / (ratio**_ORDER - 1.0)
+        zones.append(ZoneMean(name, row["w2_mean"], error))
+    inner = [zone for zone in zones if zone.zone != FREE_EDGE]
+    area = np.array([rows[zone.zone].area for zone in inner])
+    share = np.array([zone.error / max(zone.w2_mean, SMALL) for zone in inner])
+    reached = math.sqrt(float(area @ share**2 / area.sum())) if len(inner) else 0.0
+    figures = {**fine.figures, ASKED: _asked(scene), REACHED: reached}
+    return with_companions(replace(fine, figures=MappingProxyType(figures)), zones)
+
+
+def _solved(
+    cover: Cover, start: Solution | None, settings: SolverSettings, progress: Progress
+) -> Solution:
+    size = f"{len(cover.rest)} vertices:"
+    return solve(
+        cover,
+        settings=settings,
+        start=start,
+        progress=lambda **figures: progress("solve", mesh=size, **figures),
+    )
+
+
+def _in_stages(
+    cover: Cover, folder: Path, again_from: str | None, resume: bool, progress: Progress
+) -> Solution:
+    return solve_in_stages(
+        cover,
+        folder,
+        again_from=again_from,
+        resume=resume,
+        progress=lambda **figures: progress("solve", **figures),
+    )
+
+
+def _together(before: Solution, last: Solution) -> Solution:
+    """Put history and cost of the meshes before in front of those of the last one."""
+    history = {
+        name: np.concatenate([before.history[name], column])
+        for name, column in last.history.items()
+    }
+    added = {name: before.figures[name] + last.figures[name] for name in _ADDED}
+    history["cpu_seconds"][len(before.history["cpu_seconds"]) :] += before.figures["cpu_seconds"]
+    return replace(
+        last,
+        history=MappingProxyType(history),
+        figures=MappingProxyType({**last.figures, **added}),
+    )
+
+
+def _part(progress: Progress, begin: float, end: float) -> Progress:
+    """Progress that counts as a part of all the work."""
+
+    def show(name: str, /, **figures: float | str) -> None:
+        step, steps = figures.get("step"), figures.get("steps")
+        if isinstance(step, float | int) and isinstance(steps, float | int):
+            figures |= {"step": 100.0 * (begin + (end - begin) * step / steps), "steps": 100.0}
+        progress(name, **figures)
+
+    return show
+
+
+def _w2(scene: Scene, solution: Solution) -> FloatArray:
+    criteria = criteria_of(solution.cover.materials, scene.curvature, default=scene.c_threshold)
+    return assess(solution, criteria).values("w2")
+
+
+def _asked(scene: Scene) -> float:
+    if scene.tolerance is None:
+        raise InputError.single(
+            "tolerance", got="nothing", expected="a share of the zone means", file=scene.path
+        )
+    return scene.tolerance

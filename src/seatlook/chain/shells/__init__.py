@@ -1,0 +1,1 @@
+"""Results of other programs, assessed and drawn."""
