@@ -129,13 +129,3 @@ def test_wrong_mask_is_refused(mask):
     X, T = meshes.rectangle("right", 1.0, 1.0, 0.5)
     with pytest.raises(InputError, match=r"fixed: got .*, expected bool \(9,\) or \(9, 3\)"):
         solve_sheet(Sheet(X, T, fabrics.isotropic()), support=Support(fixed=mask))
-
-
-def test_pressure_on_a_sheet_with_a_free_rim_is_refused():
-    X, T = meshes.rectangle("right", 1.0, 1.0, 0.5)
-    with pytest.raises(InputError, match="pressure: got 8 rim vertices that can move"):
-        solve_sheet(
-            Sheet(X, T, fabrics.isotropic()),
-            support=Support(fixed=(X == 0.5).all(axis=1)),
-            load=Load(pressure=1.0),
-        )

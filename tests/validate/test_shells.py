@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from support.reference.shells import half_cylinder, hemisphere, pinched_cylinder, ring
+from support.reference.shells import (
+    half_cylinder,
+    hemisphere,
+    pinched_cylinder,
+    ring,
+    rolled_by_a_moment,
+)
 
 pytestmark = pytest.mark.validate
 
@@ -53,3 +59,12 @@ def test_pinched_cylinder_with_diaphragms(report):
            f"{errors.round(4)}")  # fmt: skip
     assert len(solved.positions) <= 1500
     assert abs(errors).max() <= 0.01
+
+
+@pytest.mark.parametrize("kind", ["uns", "right"])
+@pytest.mark.parametrize("edges", [24, 40])
+def test_cantilever_rolled_up_by_a_moment(kind, edges, report):
+    (short, up), exact = rolled_by_a_moment(edges, kind)
+    report(f"{kind}, {edges} edges: -u {short:.4f} of {exact[0]:.0f}, w {up:+.4f} of 0")
+    assert short == pytest.approx(12.0, rel=0.01)
+    assert abs(up) <= 0.01 * 12.0

@@ -3,7 +3,7 @@
 from seatlook.solver.foam.contact import foam_wavelength
 from seatlook.solver.methods.explicit import Explicit, UnstableStepError
 from seatlook.solver.process.settings import SheetSettings, SolverSettings
-from seatlook.solver.sheet import Load, Sheet, SheetError, Support, solve_sheet
+from seatlook.solver.sheet import Load, Moment, Sheet, SheetError, Support, solve_sheet
 from seatlook.solver.solve import SETTINGS, ConvergenceError, settings_of, solve
 
 __all__ = [
@@ -11,6 +11,7 @@ __all__ = [
     "ConvergenceError",
     "Explicit",
     "Load",
+    "Moment",
     "Sheet",
     "SheetError",
     "SheetSettings",

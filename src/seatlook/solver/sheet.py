@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ from scipy.sparse.linalg import splu
 from seatlook.errors import InputError, SolverError
 from seatlook.model import Fabric, FloatArray, IntArray
 from seatlook.solver.element.elastic import ElasticSheet
-from seatlook.solver.element.loads import DeadLoad, Pressure
+from seatlook.solver.element.loads import DeadLoad, EdgeMoment, Pressure
 from seatlook.solver.energy import Energy
 from seatlook.solver.methods.choice import method_of
 from seatlook.solver.methods.explicit import UnstableStepError
@@ -107,6 +107,20 @@ class Support:
         return np.any(masks, axis=0) if masks else None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Moment:
+    """A moment along a free edge, about an axis that keeps its direction.
+
+    Parameters
+    ----------
+    edge : (n,) bool                 vertices; the free edges between them bear the moment
+    per_length : (3,) float64 [N]    moment per length, as a vector along its axis
+    """
+
+    edge: BoolArray
+    per_length: Sequence[float]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Load:
     """What pulls and presses on a sheet.
@@ -114,15 +128,37 @@ class Load:
     Parameters
     ----------
     forces : (n, 3) float64 [N]      of constant direction
-    pressure : float [Pa]            along the face normals; needs a rim that is held all round
+    pressure : float [Pa]            along the face normals, wherever they turn
     gravity : (3,) [m/s2]            acts on the fabric's mass
+    moments : along free edges; in one step an edge turns by less than three quarters of a turn
     """
 
     forces: FloatArray | None = None
     pressure: float = 0.0
     gravity: Sequence[float] = (0.0, 0.0, 0.0)
+    moments: Sequence[Moment] = ()
+
+    def turned(self, count: int) -> BoolArray | None:
+        """Return the vertices (count,) along whose free edges moments act, if any.
+
+        Raises
+        ------
+        InputError   a mask or a moment of another shape
+        """
+        for moment in self.moments:
+            if np.asarray(moment.edge).dtype != bool or np.shape(moment.edge) != (count,):
+                raise InputError.single(
+                    "moments", got=str(np.shape(moment.edge)), expected=f"bool ({count},)"
+                )
+            if np.shape(moment.per_length) != (3,) or not np.any(moment.per_length):
+                raise InputError.single(
+                    "moments", got=str(moment.per_length), expected="three numbers, not all 0"
+                )
+        return np.any([m.edge for m in self.moments], axis=0) if self.moments else None
 
 
+# How often what a pressure does to a free rim is taken up anew.
+_ROUNDS = 40
 _FREE, _UNLOADED, _DEFAULT = Support(), Load(), SheetSettings()
 
 
@@ -211,17 +247,40 @@ def solve_sheet(
         clamped=support.directed(len(first)),
         positions=first,
         natural=sheet.natural,
+        turned=load.turned(len(first)),
     )
     if peaks is not None:
         elastic.membrane.remember(peaks)
-    if load.pressure:
-        _check_rim(elastic, held)
+    _check_moments(elastic, load, support)
     target = first if support.prescribed is None else np.where(held, support.prescribed, first)
     state = Equilibrium(first, np.inf, np.zeros(0), 0, -1, 0)
     for share in np.arange(1, settings.steps + 1) / settings.steps:
-        others = _outer(elastic, load, share, support.foundation)
-        potential = Potential(elastic.energies, others, ~held)
         x = _moved(elastic, state.x, first + share * (target - first), held)
+        loads = [*_outer(elastic, load, share, x), *support.foundation]
+        state, potential = _balanced(elastic, loads, ~held, x, settings)
+        elastic.membrane.wear(state.x)
+    solution = _report(elastic, state, potential, settings.tolerance)
+    if strict and not solution.converged:
+        raise SheetError(solution.reason, solution)
+    return solution
+
+
+def _balanced(
+    elastic: ElasticSheet,
+    loads: list[Energy],
+    free: BoolArray,
+    x: FloatArray,
+    settings: SheetSettings,
+) -> tuple[Equilibrium, Potential]:
+    """Equilibrium under ``loads`` from ``x``, and the potential that it is one of.
+
+    What a pressure does to a rim that moves has no potential: it is held while the rest comes to
+    balance, and taken up anew until that no longer matters.
+    """
+    pressures = [load for load in loads if isinstance(load, Pressure)]
+    rim = _rim_force(elastic, pressures, x, free)
+    for _ in range(_ROUNDS):
+        potential = Potential(elastic.energies, [*loads, DeadLoad(rim)], free)
         try:
             state = equilibrium(
                 elastic,
@@ -235,11 +294,24 @@ def solve_sheet(
             state = Equilibrium(x, np.inf, np.zeros(0), 0, -1, 0)
             last = _report(elastic, state, potential, settings.tolerance)
             raise SheetError(str(error), last) from error
-        elastic.membrane.wear(state.x)
-    solution = _report(elastic, state, potential, settings.tolerance)
-    if strict and not solution.converged:
-        raise SheetError(solution.reason, solution)
-    return solution
+        x, rim = state.x, _rim_force(elastic, pressures, state.x, free)
+        if not rim.any() or state.residual > settings.tolerance:
+            break
+        potential = Potential(elastic.energies, [*loads, DeadLoad(rim)], free)
+        residual = potential.residual(x, potential.value(x)[1])
+        state = replace(state, residual=residual)
+        if residual <= settings.tolerance:
+            break
+    return state, potential
+
+
+def _rim_force(
+    elastic: ElasticSheet, pressures: list[Pressure], x: FloatArray, free: BoolArray
+) -> FloatArray:
+    """Force (n, 3) [N] of pressures on what is free of the rim."""
+    rim = elastic.edges.ends[elastic.edges.free]
+    total = sum((pressure.rim_force(x, rim) for pressure in pressures), np.zeros_like(x))
+    return np.where(free, total, 0.0)
 
 
 def _start(
@@ -253,27 +325,31 @@ def _start(
     return np.array(start, dtype=np.float64, order="C"), None
 
 
-def _outer(
-    sheet: ElasticSheet, load: Load, share: float, foundation: Sequence[Energy]
-) -> list[Energy]:
-    """Energies of a share of the load, and of the foundation."""
+def _outer(sheet: ElasticSheet, load: Load, share: float, x: FloatArray) -> list[Energy]:
+    """Energies of a share of the load, on a sheet that now lies at ``x``."""
     force = np.outer(sheet.mass, load.gravity)
     if load.forces is not None:
         force += load.forces
-    energies: list[Energy] = [DeadLoad(share * force), *foundation]
+    energies: list[Energy] = [DeadLoad(share * force)]
     if load.pressure:
         energies.append(Pressure(sheet.faces, share * load.pressure))
+    for moment in load.moments:
+        edges = sheet.rim_edges(moment.edge)
+        per_length = share * np.asarray(moment.per_length, dtype=np.float64)
+        slopes = sheet.slopes_across(edges)
+        energies.append(EdgeMoment(slopes, sheet.edges.length[edges], per_length, x))
     return energies
 
 
-def _check_rim(sheet: ElasticSheet, held: BoolArray) -> None:
-    """Refuse a pressure that has no potential."""
-    rim = np.unique(sheet.edges.ends[sheet.edges.free])
-    loose = int((~held[rim]).any(axis=1).sum())
-    if loose:
-        raise InputError.single(
-            "pressure", got=f"{loose} rim vertices that can move", expected="a rim held all round"
-        )
+def _check_moments(sheet: ElasticSheet, load: Load, support: Support) -> None:
+    """Refuse a moment that acts on no edge, or on one whose direction is held."""
+    directed = support.directed(len(sheet.mass))
+    for moment in load.moments:
+        edges = sheet.rim_edges(moment.edge)
+        held = np.intersect1d(edges, sheet.rim_edges(directed))
+        if len(held) or not len(edges):
+            got = f"{len(held)} edges that are clamped or guided" if len(held) else "no free edge"
+            raise InputError.single("moments", got=got, expected="free edges between its vertices")
 
 
 def _moved(sheet: ElasticSheet, x: FloatArray, target: FloatArray, held: BoolArray) -> FloatArray:

@@ -37,3 +37,27 @@ def hanging_tip(gamma, slenderness):
             raise RuntimeError(solved.message)
         s, guess = solved.x, solved.y
     return solved.y[2, -1], solved.y[3, -1]
+
+
+def blown_tip(pressure):
+    """Tip (x, z) of a strip of length 1 and stiffness 1, clamped level, blown up from below.
+
+    The pressure stays normal to the strip, which does not stretch.
+    """
+
+    def rates(s, y, load):
+        bend, shear, pull = y[1], y[2], y[3]
+        return np.stack(
+            [bend, -shear, -load - pull * bend, shear * bend, np.cos(y[0]), np.sin(y[0])]
+        )
+
+    def ends(a, b):
+        return np.array([a[0], b[1], b[2], b[3], a[4], a[5]])
+
+    s, guess = np.linspace(0, 1, 200), np.zeros((6, 200))
+    for load in np.linspace(0, pressure, 12)[1:]:
+        solved = solve_bvp(lambda s, y, q=load: rates(s, y, q), ends, s, guess, tol=1e-8)
+        if not solved.success:
+            raise RuntimeError(solved.message)
+        s, guess = solved.x, solved.y
+    return guess[4, -1], guess[5, -1]

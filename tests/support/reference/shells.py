@@ -5,7 +5,7 @@ What is printed there was found with 4-node shells that also shear (S4R), on fin
 
 import numpy as np
 
-from seatlook.solver import Load, Sheet, SheetSettings, Support, solve_sheet
+from seatlook.solver import Load, Moment, Sheet, SheetSettings, Support, solve_sheet
 from support import fabrics, meshes
 
 
@@ -128,3 +128,30 @@ def pinched_cylinder(h, kind="uns", load=12000.0, steps=10):
     )
     move = solved.positions - natural
     return np.array([-move[point, 2], -move[other, 1]]), solved
+
+
+def rolled_by_a_moment(edges, kind="uns", share=1.0, steps=20):
+    """Tip (-u, w) of a cantilever of 12 x 1 x 0.1 under a share of the moment of a full circle.
+
+    Half of its width, with its middle line in a plane of symmetry: free to twist, a strip that is
+    all but rolled up leaves its plane. Closed form second.
+    """
+    length, width, thickness, young = 12.0, 1.0, 0.1, 1.2e6
+    X, T = meshes.rectangle(kind, length, 0.5 * width, length / edges)
+    end, middle = X[:, 0] > length - 1e-9, X[:, 1] < 1e-9
+    bend = young * thickness**3 / 12
+    turn = 2 * np.pi * share
+    solved = solve_sheet(
+        Sheet(X, T, fabrics.isotropic(young * thickness, bend, thickness=thickness)),
+        support=Support(
+            fixed=np.stack([0 * middle, middle, 0 * middle], axis=1).astype(bool),
+            clamped=X[:, 0] < 1e-9,
+            guided=middle,
+        ),
+        load=Load(moments=[Moment(end, (0.0, -bend * turn / length, 0.0))]),
+        settings=SheetSettings(tolerance=1e-5, steps=steps),
+        strict=True,
+    )
+    tip = solved.positions[end].mean(axis=0)
+    exact = np.array([length - length * np.sin(turn) / turn, length * (1 - np.cos(turn)) / turn])
+    return np.array([length - tip[0], tip[2]]), exact

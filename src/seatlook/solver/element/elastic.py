@@ -12,7 +12,7 @@ from seatlook.errors import InputError
 from seatlook.model import Fabric, FloatArray, Hem, IntArray
 from seatlook.solver.element.bending import Bending
 from seatlook.solver.element.curvature import Clamps, Curvature, recover_curvature, released
-from seatlook.solver.element.edgeslope import Rows, areas, edges_of, slope_rows
+from seatlook.solver.element.edgeslope import areas, edges_of, slope_rows
 from seatlook.solver.element.hem import Folds
 from seatlook.solver.element.membrane import Membrane
 from seatlook.solver.element.natural import NaturalShape, natural_shape
@@ -35,6 +35,7 @@ class ElasticSheet:
         across it that its triangle has in ``positions``, (n, 3) [m], the flat sheet if not given;
         with a natural shape, the one that the shape has there
     natural : (n, 3) float64 [m]  shape in space without stress; the flat sheet if not given
+    turned : (n,) bool            a free edge between two of these passes on a moment
     hem : second layer and folds along the seams
 
     Raises
@@ -53,6 +54,7 @@ class ElasticSheet:
         clamped: BoolArray | None = None,
         positions: FloatArray | None = None,
         natural: FloatArray | None = None,
+        turned: BoolArray | None = None,
         hem: Hem | None = None,
     ) -> None:
         rest = np.array(rest, dtype=np.float64, order="C")
@@ -75,13 +77,13 @@ class ElasticSheet:
         self.bending_stiffness = stiffness
         rows = slope_rows(rest, faces, self.edges)
         self.folds = None if hem is None else Folds(hem, self.edges, rows)
-        self.area = areas(rest, faces)
+        self.area, self._rows = areas(rest, faces), rows
+        self._loaded = self.rim_edges(turned)
         self._shape: NaturalShape | None = None
         if natural is None:
-            clamps = self._clamps(clamped, positions)
-            self._curvature = self._recovered(rows, stiffness, clamps)
+            self._curvature = self._recovered(stiffness, self._clamps(clamped, positions))
         else:
-            stiffness = self._bend(natural, rows, clamped)
+            stiffness = self._bend(natural, clamped)
         self.mass = np.bincount(
             faces.ravel(), np.repeat(density * self.area / 3.0, 3), minlength=len(rest)
         )
@@ -168,52 +170,57 @@ class ElasticSheet:
         around = np.maximum(np.bincount(corners, weight, minlength=n), np.finfo(float).tiny)
         return np.asarray((total / around[:, None]).reshape(-1, 2, 2))
 
+    def rim_edges(self, mask: BoolArray | None) -> IntArray:
+        """Free edges (k,) between two vertices of ``mask`` (n,)."""
+        if mask is None:
+            return np.zeros(0, dtype=np.int64)
+        return np.flatnonzero(self.edges.free & mask[self.edges.ends].all(axis=1))
+
+    def slopes_across(self, edges: IntArray) -> csr_array:
+        """Matrix (k, n) [1/m] from positions to the slopes across ``edges`` (k,)."""
+        rows = self._rows
+        index = (rows.weights, rows.nodes, rows.start)
+        whole = csr_array(index, shape=(len(self.edges.ends), len(self.rest)))
+        return csr_array(whole[edges])
+
+    def _bearing(self) -> IntArray:
+        """Free edges that pass on a moment: their slope is the recovered one."""
+        return self._loaded if self.folds is None else np.union1d(self._loaded, self.folds.edges)
+
     def _recovered(
-        self, rows: Rows, stiffness: FloatArray, clamps: Clamps | None, *, loose: bool = True
+        self, stiffness: FloatArray, clamps: Clamps | None, *, loose: bool = True
     ) -> Curvature:
-        """Second derivatives; free edges that carry no moment turn as they like if ``loose``."""
-        sewn = None if self.folds is None else self.folds.edges
+        """Second derivatives; free edges that bear no moment turn as they like if ``loose``."""
         return recover_curvature(
             len(self.rest),
             self.edges,
-            rows,
+            self._rows,
             self.area,
             stiffness,
             clamps,
-            sewn if loose else np.flatnonzero(self.edges.free),
+            self._bearing() if loose else np.flatnonzero(self.edges.free),
         )
 
-    def _bend(self, natural: FloatArray, rows: Rows, clamped: BoolArray | None) -> FloatArray:
+    def _bend(self, natural: FloatArray, clamped: BoolArray | None) -> FloatArray:
         """Take a natural shape; return the bending matrices (m, 3, 3) for the flat mesh."""
-        plain = self._recovered(rows, self.bending_stiffness, None, loose=False)
+        plain = self._recovered(self.bending_stiffness, None, loose=False)
         shape = natural_shape(natural, self.rest, self.faces, self.edges, plain)
-        clamps = None if clamped is None else self._natural_clamps(clamped, rows, shape)
-        within = shape.covariant(self._recovered(rows, self.bending_stiffness, clamps, loose=False))
-        measure = shape.measure
-        stiffness = np.swapaxes(measure, 1, 2) @ self.bending_stiffness @ measure
+        held = self.rim_edges(clamped)
+        slopes = self.slopes_across(held) @ shape.positions
+        clamps = Clamps(held, slopes, shape.positions)
+        within = shape.covariant(self._recovered(self.bending_stiffness, clamps, loose=False))
+        stiffness = np.swapaxes(shape.measure, 1, 2) @ self.bending_stiffness @ shape.measure
         loose = self.edges.free.copy()
-        if clamps is not None:
-            loose[clamps.edges] = False
+        loose[held] = loose[self._bearing()] = False
         self._curvature = released(within, self.edges, stiffness, loose)
         self._shape, self.area = shape, self.area * shape.stretch
         return np.asarray(stiffness)
-
-    def _held(self, clamped: BoolArray) -> IntArray:
-        """Free edges between clamped vertices."""
-        return np.flatnonzero(self.edges.free & clamped[self.edges.ends].all(axis=1))
-
-    def _natural_clamps(self, clamped: BoolArray, rows: Rows, shape: NaturalShape) -> Clamps:
-        """Free edges between clamped vertices, with the slope of the natural shape."""
-        held = self._held(clamped)
-        index = (rows.weights, rows.nodes, rows.start)
-        slope = csr_array(index, shape=(len(self.edges.ends), len(self.rest)))
-        return Clamps(held, np.asarray(slope @ shape.positions)[held], shape.positions)
 
     def _clamps(self, clamped: BoolArray | None, positions: FloatArray | None) -> Clamps | None:
         """Free edges between clamped vertices, with the slope of their own plane triangle."""
         if clamped is None:
             return None
-        held = self._held(clamped)
+        held = self.rim_edges(clamped)
         x = np.pad(self.rest, ((0, 0), (0, 1))) if positions is None else np.asarray(positions)
         corners = self.faces[self.edges.faces[held, 0]]
         plane = np.linalg.inv(np.diff(self.rest[corners], axis=1))
