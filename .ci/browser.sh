@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Chromium and its driver, and three.js, for the tests of the gallery page and of the GLB only.
+# Chromium and its driver, three.js, and what checks scripts, for the tests of the page and the GLB.
 # usage: browser.sh VENV
 set -euo pipefail
 venv=$1
@@ -13,5 +13,6 @@ apt() {
 }
 "$venv/bin/python" -m pip --disable-pip-version-check install --quiet --group browser
 command -v npm >/dev/null || apt npm
-npm install --silent --no-audit --no-fund --no-save --prefix "$venv/three" three@0.187.0
+npm install --silent --no-audit --no-fund --no-save --prefix "$venv/three" three@0.187.0 \
+    typescript@7.0.2 eslint@10.15.0 @eslint/js@10.0.1
 command -v chromium >/dev/null || apt chromium

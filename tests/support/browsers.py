@@ -12,6 +12,10 @@ import pytest
 FLAGS = [
     "--no-sandbox",
     "--disable-gpu",
+    # WebGL by software, for the viewer.
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",

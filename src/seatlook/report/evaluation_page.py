@@ -28,6 +28,7 @@ from seatlook.report.sections.parameters import parameter_tables, parameter_toml
 from seatlook.report.sections.rigs import rig_head
 from seatlook.report.sections.words import light_words, look_words
 from seatlook.report.sections.wrinkles import wrinkle_section
+from seatlook.report.viewer.section import viewer_section
 from seatlook.results.conditions import conditions
 from seatlook.wrinkle import INDICES
 
@@ -51,6 +52,7 @@ def write_report(
         score=score,
         summary=first_lines(evaluation.case.assessment, score, checks),
         close_up=_close_up(evaluation, score),
+        viewer=viewer_section(evaluation.case, evaluation.camera),
     )
     return write_page(data, evaluation.folder, single_file=single_file)
 

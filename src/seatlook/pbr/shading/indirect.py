@@ -83,6 +83,15 @@ class IndirectLight:
             open_[k:] = _HIDDEN_SKY
         return light.Indirect(diffuse, mirrored, open_, even, panorama)
 
+    def sky_share(self, level: Quality) -> FloatArray:
+        """Share (n,) of an even sky that reaches each vertex of the drawn surface."""
+        out, k = np.empty(len(self.surface.mesh.vertices)), self.surface.vertices
+        seen = self._half_space(level)
+        share = (seen.hits == rays.OPEN).mean(axis=1)[:, None]
+        out[:k] = self.lookout.spread(seen.which, self._shared(seen, share, _TIMES))[:, 0]
+        out[k:] = _HIDDEN_SKY * out[: self.few].mean()
+        return out
+
     def _first_bounce(self, sources: Sources, seen: Vertices, level: Quality) -> FloatArray:
         """Luminance (m, 3) that the vertices which look get of the faces they see."""
         sent = np.empty((len(seen.which), 3))

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError, RenderError
-from seatlook.model import Camera, Light, Rig, Solution, Thread
+from seatlook.model import Camera, FloatArray, Light, Rig, Solution, Thread
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.cache import Cache
 from seatlook.pbr.kernels import area_shadow, bvh, coherent, shade, shadow, stage, stitch, surface
@@ -193,6 +193,10 @@ class Studio:
         surface.distances(self.surface.mesh, eye, foam, foam_far)
         pressed = np.where(front, _COMPRESSED, 0.0)
         np.copyto(ids, foam, where=foam_far < cover_far - pressed)
+
+    def sky_share(self, quality: str = "standard") -> FloatArray:
+        """Share (n,) of an even sky that reaches each vertex of the drawn surface."""
+        return self._indirect.sky_share(quality_named(quality))
 
     def shadows(self, rig: Rig, camera: Camera, quality: str) -> npt.NDArray[np.uint8]:
         """Share of each light [1/255] seen by each sample of :meth:`faces`, (lights, h, w).

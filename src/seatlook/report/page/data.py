@@ -17,6 +17,7 @@ from seatlook.report.page.types import (
     MapView,
     ScoreSection,
     Spot,
+    ViewerSection,
     WrinkleSection,
 )
 
@@ -89,6 +90,7 @@ class PageData:
     spots : places of the worst wrinkles in the pictures
     toml : what parameters belong to -> the same as TOML, with every digit
     score : how visible wrinkles are; None where nothing was scored
+    viewer : the seat to be turned; None where there is none
     parameters : what they belong to -> table of keys, values and sources
     provenance : label -> value: versions, scene digest, seed, element size, lambda / h, ...
     checks : solver conditions and accept limits
@@ -124,6 +126,7 @@ class PageData:
     making: MakingSection | None = None
     design: DesignSection | None = None
     score: ScoreSection | None = None
+    viewer: ViewerSection | None = None
     spots: tuple[Spot, ...] = ()
     toml: MappingProxyType[str, str] = field(default_factory=lambda: MappingProxyType({}))
     checks: tuple[Check, ...] = ()

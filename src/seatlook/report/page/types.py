@@ -133,6 +133,14 @@ class DesignSection:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ViewerSection:
+    """The viewer as two texts: its script, and the content that this reads, in JSON."""
+
+    script: str
+    content: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SeenPlace:
     """A place where wrinkles show, or where there is one that does not.
 

@@ -61,14 +61,28 @@ def page_html(data: PageData, *, inside: Path | None = None) -> str:
     # The script finds a picture by the name of its element, whatever its address is.
     templates.globals["ids"] = {name: f"i{k}" for k, name in enumerate(dict.fromkeys(data.images))}
     templates.globals["alone"] = inside is not None
+    scripts = (script, data.viewer.script) if data.viewer else (script,)
     return templates.get_template("page.html.j2").render(
         page=data,
-        policy=content_policy(style, script, images="'self'" if inside is None else "data:"),
+        policy=content_policy(style, *scripts, images=_images(data, inside)),
         style=Markup(style),
-        script=Markup(script),
+        scripts=[Markup(text) for text in scripts],
+        viewer_content=Markup(_inert(data.viewer.content if data.viewer else "")),
         charts=history_charts(data.history),
         chart_size=(WIDTH, HEIGHT),
     )
+
+
+def _images(data: PageData, inside: Path | None) -> str:
+    """Where images may come from; a page that the viewer sends holds a picture in itself."""
+    if inside is not None:
+        return "data:"
+    return "'self' data:" if data.viewer else "'self'"
+
+
+def _inert(json: str) -> str:
+    """JSON that ends no script element, whatever names are in it."""
+    return json.replace("<", "\\u003c")
 
 
 def _data_uri(path: Path) -> str:
@@ -90,11 +104,12 @@ def environment() -> Environment:
     return templates
 
 
-def content_policy(style: str, script: str, *, images: str = "'self'") -> str:
-    """Content policy: nothing but the page's own style, script and images."""
+def content_policy(style: str, *scripts: str, images: str = "'self'") -> str:
+    """Content policy: nothing but the page's own style, scripts and images."""
+    admitted = " ".join(f"'{_digest(script)}'" for script in scripts)
     return (
         f"default-src 'none'; img-src {images}; base-uri 'none'; form-action 'none'; "
-        f"style-src '{_digest(style)}'; script-src '{_digest(script)}'"
+        f"style-src '{_digest(style)}'; script-src {admitted}"
     )
 
 

@@ -1,0 +1,266 @@
+// The viewer: opened on demand, drawn when something has changed, gone without harm.
+
+import { Controls, drawBar } from "./controls.js";
+import { Knowledge } from "./here.js";
+import { Pointer } from "./pointer.js";
+import { Renderer } from "./drawing/renderer.js";
+import { Scene } from "./scene.js";
+import { arraysOf } from "./drawing/payload.js";
+import { box, button, element, handOut, input, say } from "./page.js";
+import { pageOf, sentChoice } from "./send.js";
+import { photoOf, readPhoto } from "./photo.js";
+import { photoTexture } from "./drawing/materials.js";
+
+/** @typedef {import("./drawing/renderer.js").Shown} Shown */
+/** @typedef {import("./drawing/payload.js").Content} Content */
+/** @typedef {import("./drawing/payload.js").Numbers} Numbers */
+
+const STILL = 150;  // ms without a change after which a fine picture is begun
+
+class Viewer {
+  /**
+   * @param {Content} content
+   * @param {(name: string) => Numbers} array
+   * @param {string} room the section as it was
+   */
+  constructor(content, array, room) {
+    this.content = content;
+    this.array = array;
+    this.room = room;
+    this.canvas = element("canvas", HTMLCanvasElement);
+    this.fit();
+    this.renderer = new Renderer(this.canvas, content, array);
+    this.scene = new Scene(content);
+    /** @type {{data: string, picture: ImageBitmap, texture: WebGLTexture} | null} */
+    this.photo = null;
+    this.knowledge = new Knowledge(content, array);
+    this.bars = ["viridis", "diverging"].map(array);
+    const { middle } = this.renderer.mesh;
+    this.controls = new Controls(this.scene, middle, {
+      moved: () => this.moved(), look: () => this.relook(), photo: (file) => void this.takePhoto(file),
+      resized: () => this.moved(), fly: (wrinkle) => this.fly(wrinkle),
+    });
+    this.pointer = new Pointer(this.canvas, this.scene.camera, () => this.moved(), (x, y) => this.pick(x, y));
+    this.stir = 0;
+    this.asked = 0;
+    this.coarse = false;
+    this.listen();
+    this.renderer.refill(this.shown());
+  }
+
+  listen() {
+    button("reset").addEventListener("click", () => this.reset());
+    button("save").addEventListener("click", () => void this.save());
+    button("toml").addEventListener("click", () => void this.copyToml());
+    button("send").addEventListener("click", () => this.send());
+    new ResizeObserver(() => {
+      if (this.fit()) this.moved();
+    }).observe(this.canvas);
+    this.canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      cancelAnimationFrame(this.asked);
+      shut("The graphics card stopped. The pictures on this page stay.");
+    });
+    // The page's own keys stay out of what is typed here.
+    box("room").addEventListener("keydown", (event) => {
+      if (event.key !== "Escape") event.stopPropagation();
+    });
+    for (const kind of ["dragover", "drop"]) {
+      box("room").addEventListener(kind, (event) => {
+        event.preventDefault();
+        const file = /** @type {DragEvent} */ (event).dataTransfer?.files[0];
+        if (kind === "drop" && file) void this.takePhoto(file);
+      });
+    }
+  }
+
+  /** One pixel of the picture is one of the screen. */
+  fit() {
+    const times = window.devicePixelRatio;
+    const width = Math.max(1, Math.round(this.canvas.clientWidth * times));
+    const height = Math.max(1, Math.round(this.canvas.clientHeight * times));
+    if (this.canvas.width === width && this.canvas.height === height) return false;
+    [this.canvas.width, this.canvas.height] = [width, height];
+    return true;
+  }
+
+  /** @returns {Shown} */
+  shown() {
+    const { scene, photo } = this;
+    const { middle } = this.renderer.mesh;
+    const { materials, look } = scene.materials();
+    const width = Number(input("photo-size").value) / 1e3;
+    return {
+      rig: scene.rig(middle), materials, look, layer: scene.layer, ev100: scene.ev100(middle), camera: scene.camera,
+      photo: photo && width > 0 ? {
+        texture: photo.texture, pixels: [photo.picture.width, photo.picture.height],
+        size: [width, width * photo.picture.height / photo.picture.width],
+      } : null,
+    };
+  }
+
+  /** Something has changed: draw it coarsely now, and finely once all is still. */
+  moved() {
+    this.stir = performance.now();
+    this.renderer.restart();
+    if (this.scene.layer >= 0) drawBar(this.bars[this.content.maps[this.scene.layer].low < 0 ? 1 : 0]);
+    this.coarse = true;
+    this.ask();
+  }
+
+  relook() {
+    this.renderer.refill(this.shown());
+    this.moved();
+  }
+
+  ask() {
+    cancelAnimationFrame(this.asked);
+    this.asked = requestAnimationFrame(() => this.frame());
+  }
+
+  frame() {
+    if (this.coarse) {
+      this.coarse = false;
+      this.renderer.move(this.shown());
+      this.ask();
+    } else if (performance.now() - this.stir < STILL) {
+      this.ask();
+    } else if (this.renderer.rest(this.shown())) {
+      this.ask();
+    } else {
+      box("room").dataset.still = "yes";
+      return;
+    }
+    delete box("room").dataset.still;
+  }
+
+  /** @param {number} x @param {number} y */
+  pick(x, y) {
+    const { camera } = this.scene;
+    const ray = camera.ray(x, y, this.canvas.width / this.canvas.height);
+    const hit = this.renderer.mesh.hit(camera.position, ray);
+    box("here").textContent = hit ? this.knowledge.at(this.renderer.mesh, hit) : "Here: nothing of the seat.";
+  }
+
+  /** @param {number} number */
+  fly(number) {
+    const wrinkle = this.content.wrinkles[number];
+    this.scene.camera.flyTo(wrinkle.position, wrinkle.normal, wrinkle.length);
+    box("here").textContent = `Wrinkle ${wrinkle.label}; mostly by ${wrinkle.cause}.`;
+    this.moved();
+  }
+
+  reset() {
+    this.scene.changes = {};
+    this.photo = null;
+    input("photo").value = "";
+    this.controls.show();
+    this.relook();
+  }
+
+  /** @param {Blob} file */
+  async takePhoto(file) {
+    try {
+      const { picture, data } = await readPhoto(file);
+      this.lay(picture, data);
+      say("");
+    } catch (problem) {
+      say(`This is no photo that can be read: ${problem instanceof Error ? problem.message : problem}`);
+    }
+  }
+
+  /** @param {ImageBitmap} picture @param {string} data */
+  lay(picture, data) {
+    if (this.photo) this.renderer.gl.deleteTexture(this.photo.texture);
+    this.photo = { picture, data, texture: photoTexture(this.renderer.gl, picture) };
+    this.moved();
+  }
+
+  /** Draw all samples now. */
+  finish() {
+    cancelAnimationFrame(this.asked);
+    this.coarse = false;
+    while (this.renderer.rest(this.shown()));
+  }
+
+  async save() {
+    this.finish();
+    const blob = await new Promise((done) => { this.canvas.toBlob(done, "image/png"); });
+    if (blob instanceof Blob) handOut(blob, "seat.png");
+  }
+
+  async copyToml() {
+    const text = this.scene.toml(this.renderer.mesh.middle);
+    const area = element("text", HTMLTextAreaElement);
+    area.hidden = false;
+    area.value = text;
+    try {
+      await navigator.clipboard.writeText(text);
+      say("Copied.");
+    } catch {
+      area.select();
+      say("Selected: press Ctrl+C.");
+    }
+  }
+
+  send() {
+    this.finish();
+    const choice = {
+      ...this.scene.choice(),
+      photo: this.photo ? { data: this.photo.data, width: Number(input("photo-size").value) } : null,
+    };
+    const page = pageOf(choice, this.room, this.canvas.toDataURL("image/png"));
+    handOut(new Blob([page], { type: "text/html" }), "seat.html");
+    say("The file seat.html shows this seat in any browser.");
+  }
+
+  /** @param {import("./scene.js").Choice} choice */
+  async choose(choice) {
+    this.scene.choose(choice);
+    if (choice.photo) {
+      input("photo-size").value = String(choice.photo.width);
+      this.lay(await photoOf(choice.photo.data), choice.photo.data);
+    }
+    this.controls.show();
+    this.relook();
+  }
+}
+
+/** @param {string} why */
+function shut(why) {
+  box("room").hidden = true;
+  box("offer").hidden = true;
+  say(why);
+}
+
+/** @param {string} room */
+async function open(room) {
+  const text = document.getElementById("viewer-content")?.textContent ?? "";
+  button("open").disabled = true;
+  box("room").hidden = false;
+  try {
+    /** @type {Content} */
+    const content = JSON.parse(text);
+    const viewer = new Viewer(content, await arraysOf(content.buffers), room);
+    const choice = sentChoice();
+    if (choice) await viewer.choose(choice);
+    box("offer").hidden = true;
+    document.getElementById("viewer-sent")?.remove();
+    viewer.moved();
+    say("");
+  } catch (problem) {
+    console.info(`viewer: ${problem instanceof Error ? problem.message : problem}`);
+    shut("This browser cannot turn the seat: it draws no WebGL 2. The pictures on this page need none.");
+  }
+}
+
+function start() {
+  const section = document.getElementById("viewer");
+  if (!section) return;
+  const room = section.outerHTML;
+  box("offer").hidden = false;
+  button("open").addEventListener("click", () => void open(room));
+  if (sentChoice()) void open(room);
+}
+
+start();

@@ -1,0 +1,273 @@
+"""The viewer in Chromium with WebGL by software: from file://, offline, by mouse and keyboard."""
+
+from __future__ import annotations
+
+import base64
+import importlib
+import io
+import shutil
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image as Pillow
+
+import seatlook
+from seatlook.chain.case import Case
+from seatlook.report import write_page
+from seatlook.report.page.types import ViewerSection
+from seatlook.report.viewer.section import viewer_section
+from support.browsers import FLAGS
+from support.pages import page_data, write_png
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(600)]
+
+STILL = "#viewer-room[data-still]"
+
+
+@pytest.fixture(scope="module")
+def case(demo_scene) -> Case:
+    solved = seatlook.open(demo_scene)
+    # A threshold this low makes wrinkles of what the coarse cover has.
+    return Case(replace(solved.scene, c_threshold=2.0), solution=solved.solution)
+
+
+@pytest.fixture(scope="module")
+def viewer(case) -> ViewerSection:
+    return viewer_section(case, case.camera(None))
+
+
+@pytest.fixture(scope="module")
+def address(viewer, tmp_path_factory) -> str:
+    folder: Path = tmp_path_factory.mktemp("page")
+    return write_page(page_data(folder, viewer=viewer), folder).as_uri()
+
+
+@pytest.fixture
+def page(browser: Any, address: str) -> Iterator[Any]:
+    """Open the page; a console message, an error or a request from outside fails the test."""
+    context = browser.new_context(
+        offline=True, viewport={"width": 760, "height": 700}, accept_downloads=True
+    )
+    page, messages = context.new_page(), []
+    listen(page, messages)
+    page.goto(address)
+    yield page
+    context.close()
+    assert messages == []
+
+
+def listen(page: Any, messages: list[str]) -> None:
+    # Chromium says that waiting for a picture is slow; it is meant to wait.
+    page.on("console", lambda m: None if "GPU stall" in m.text else messages.append(m.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
+    page.on(
+        "request",
+        lambda r: None if r.url.startswith(("file:", "data:", "blob:")) else messages.append(r.url),
+    )
+
+
+def open_viewer(page: Any) -> None:
+    page.locator("#viewer-open").click()
+    settle(page)
+
+
+def settle(page: Any) -> None:
+    page.wait_for_timeout(200)
+    page.locator(STILL).wait_for(timeout=90_000)
+
+
+def pixels(page: Any) -> np.ndarray:
+    """What the viewer shows, (h, w, 3)."""
+    data = page.evaluate("() => document.getElementById('viewer-canvas').toDataURL('image/png')")
+    content = base64.b64decode(data.split(",")[1])
+    return np.asarray(Pillow.open(io.BytesIO(content)).convert("RGB")).astype(float)
+
+
+def differs(before: np.ndarray, after: np.ndarray) -> bool:
+    return float(np.abs(before - after).mean()) > 0.5
+
+
+def put(page: Any, name: str, value: str) -> None:
+    page.locator(f"#viewer-{name}").fill(value)
+
+
+def test_nothing_is_drawn_before_it_is_asked_for(page):
+    assert not page.locator("#viewer-canvas").is_visible()
+    page.locator("#viewer-open").click()
+    assert page.locator("#viewer-canvas").is_visible()
+    settle(page)
+
+
+def test_it_is_turned_and_enlarged_by_mouse_and_by_keyboard(page):
+    open_viewer(page)
+    canvas = page.locator("#viewer-canvas")
+    area = canvas.bounding_box()
+    middle = area["x"] + area["width"] / 2, area["y"] + area["height"] / 2
+    shown = [pixels(page)]
+
+    def step(act: Any) -> None:
+        act()
+        settle(page)
+        shown.append(pixels(page))
+        assert differs(shown[-2], shown[-1])
+
+    def drag(button: str) -> None:
+        page.mouse.move(*middle)
+        page.mouse.down(button=button)
+        page.mouse.move(middle[0] + 60, middle[1] + 10, steps=3)
+        page.mouse.up(button=button)
+
+    step(lambda: drag("left"))
+    step(lambda: drag("right"))
+    step(lambda: page.mouse.wheel(0, -300))
+    canvas.focus()
+    for key in ("ArrowLeft", "Shift+ArrowUp", "-"):
+        step(lambda key=key: page.keyboard.press(key))
+    page.get_by_role("button", name="driver door").click()
+    settle(page)
+    assert differs(shown[-1], pixels(page))
+
+
+def test_light_material_and_map_change_what_is_seen(page):
+    open_viewer(page)
+    last = pixels(page)
+    changes = [
+        lambda: put(page, "elevation", "20"),
+        lambda: put(page, "azimuth", "90"),
+        lambda: put(page, "power", "1"),
+        lambda: page.locator("#viewer-follow").check(),
+        lambda: page.locator("#viewer-look").select_option(index=1),
+        lambda: (put(page, "hex", "#7a1020"), page.locator("#viewer-hex").press("Enter")),
+        lambda: (put(page, "lab", "70, 0, 30"), page.locator("#viewer-lab").press("Enter")),
+        lambda: put(page, "nap", "0.9"),
+        lambda: page.locator("#viewer-layer").select_option(label="W2"),
+        lambda: page.locator("#viewer-layer").select_option(label="Gap"),
+        lambda: page.locator("#viewer-layer").select_option(label="nothing"),
+        lambda: page.locator("#viewer-rig").select_option(index=1),
+    ]
+    for number, change in enumerate(changes):
+        change()
+        settle(page)
+        now = pixels(page)
+        assert differs(last, now), f"change {number}"
+        last = now
+    assert page.locator("#viewer-hex").input_value().startswith("#")
+
+
+def test_a_colour_that_is_none_is_said(page):
+    open_viewer(page)
+    put(page, "hex", "wine")
+    page.locator("#viewer-hex").press("Enter")
+    assert "six digits" in page.locator("#viewer-status").text_content()
+    assert page.locator("#viewer-hex").get_attribute("aria-invalid") == "true"
+
+
+def test_a_place_is_named_by_mouse_and_by_keyboard(page):
+    open_viewer(page)
+    page.locator("#viewer-canvas").focus()
+    page.keyboard.press("Enter")
+    by_key = page.locator("#viewer-here").text_content()
+    assert "W2" in by_key
+    assert "Nearest seam" in by_key
+    area = page.locator("#viewer-canvas").bounding_box()
+    page.mouse.click(area["x"] + area["width"] / 2, area["y"] + area["height"] / 2)
+    panel = by_key.split(",")[0]
+    assert page.locator("#viewer-here").text_content().startswith(panel)
+    page.mouse.click(area["x"] + 3, area["y"] + 3)
+    assert page.locator("#viewer-here").text_content() == "Here: nothing of the seat."
+
+
+def test_wrinkles_are_flown_to(page, case):
+    assert case.assessment.wrinkles
+    open_viewer(page)
+    before = pixels(page)
+    page.locator("#viewer-wrinkle").select_option(index=1)
+    settle(page)
+    assert differs(before, pixels(page))
+    assert page.locator("#viewer-here").text_content().startswith("Wrinkle 1: ")
+
+
+def test_what_is_copied_is_a_light_and_a_look_that_a_scene_can_hold(page, tmp_path):
+    tomllib = importlib.import_module("tomllib")
+    open_viewer(page)
+    put(page, "elevation", "35")
+    page.locator("#viewer-toml").click()
+    text = page.locator("#viewer-text").input_value()
+    said = tomllib.loads(text)
+    assert said["rig"][0]["light"][0]["elevation_deg"] == pytest.approx(35.0)
+    assert len(said["appearance"]["albedo"]) == 3
+
+
+def test_it_is_sent_as_one_file_that_looks_the_same(page, browser, tmp_path):
+    write_png(
+        tmp_path / "fabric.png", np.random.default_rng(0).integers(0, 255, (40, 60, 3), np.uint8)
+    )
+    open_viewer(page)
+    put(page, "elevation", "25")
+    page.locator("#viewer-photo").set_input_files(tmp_path / "fabric.png")
+    settle(page)
+    with page.expect_download() as sent:
+        page.locator("#viewer-send").click()
+    shown = pixels(page)
+    (tmp_path / "elsewhere").mkdir()
+    sent.value.save_as(tmp_path / "elsewhere/seat.html")
+    context = browser.new_context(offline=True, viewport={"width": 760, "height": 700})
+    other, messages = context.new_page(), []
+    listen(other, messages)
+    other.goto((tmp_path / "elsewhere/seat.html").as_uri())
+    settle(other)
+    there = pixels(other)
+    assert there.shape == shown.shape
+    assert np.abs(there - shown).mean() < 0.5
+    assert messages == []
+    context.close()
+
+
+def test_without_webgl_the_pictures_stay(browser, address):
+    flags = [flag for flag in FLAGS if "swiftshader" not in flag and "angle" not in flag]
+    other = browser.browser_type.launch(
+        executable_path=shutil.which("chromium"), args=[*flags, "--disable-3d-apis"]
+    )
+    page = other.new_page()
+    page.goto(address)
+    page.locator("#viewer-open").click()
+    page.get_by_text("it draws no WebGL 2").wait_for()
+    assert not page.locator("#viewer-canvas").is_visible()
+    assert page.locator(".grid img").first.is_visible()
+    other.close()
+
+
+def test_a_lost_context_leaves_the_pictures(page):
+    open_viewer(page)
+    page.evaluate(
+        "() => document.getElementById('viewer-canvas').getContext('webgl2')"
+        ".getExtension('WEBGL_lose_context').loseContext()"
+    )
+    page.get_by_text("The graphics card stopped.").wait_for()
+    assert not page.locator("#viewer-canvas").is_visible()
+    assert page.locator(".grid img").first.is_visible()
+
+
+@pytest.mark.parametrize("width", [360, 1280])
+def test_no_accessibility_violation_and_nothing_overflows(browser, address, width):
+    axe = importlib.import_module("axe_playwright_python.sync_playwright").Axe()
+    # The checker is injected as a script, which the page's own policy rightly refuses.
+    context = browser.new_context(
+        offline=True, bypass_csp=True, viewport={"width": width, "height": 900}
+    )
+    page = context.new_page()
+    page.goto(address)
+    if width == 360:
+        page.locator("#viewer-head .fold").click()
+    open_viewer(page)
+    page.locator("#viewer-layer").select_option(label="W2")
+    page.locator("#viewer-toml").click()
+    settle(page)
+    assert page.evaluate("() => document.documentElement.scrollWidth") == width
+    result = axe.run(page)
+    assert result.violations_count == 0, result.generate_report()
+    context.close()

@@ -1,0 +1,66 @@
+// Pictures of the viewer's renderer as radiance over white, and how long they take.
+
+import { Renderer } from "./drawing/renderer.js";
+import { Scene } from "./scene.js";
+import { arraysOf } from "./drawing/payload.js";
+
+async function start() {
+  const content = JSON.parse(document.getElementById("content").textContent);
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = content.size;
+  const began = performance.now();
+  const array = await arraysOf(content.buffers);
+  const renderer = new Renderer(canvas, content, array);
+  const scene = new Scene(content);
+  const shown = () => {
+    const { middle } = renderer.mesh;
+    return {
+      rig: scene.rig(middle), ...scene.materials(), layer: -1, ev100: scene.ev100(middle), camera: scene.camera, photo: null,
+    };
+  };
+  renderer.refill(shown());
+  renderer.move(shown());
+  const opened = performance.now() - began;
+
+  // Radiance [cd/m2] as base64 of float32, red, green, blue, from the lowest row up.
+  const picture = (look, rig, samples) => {
+    Object.assign(scene, { lookNumber: look, rigNumber: rig });
+    renderer.refill(shown());
+    renderer.restart();
+    while (renderer.rest(shown(), samples));
+    const { gl } = renderer, { width, height, frame } = renderer.targets.sum;
+    const sum = new Float32Array(4 * width * height), out = new Float32Array(3 * width * height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, sum);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    const white = 1.2 * Math.pow(2, shown().ev100) / renderer.done;
+    for (let k = 0; k < width * height; ++k) {
+      for (let c = 0; c < 3; ++c) out[3 * k + c] = white * sum[4 * k + c];
+    }
+    const bytes = new Uint8Array(out.buffer);
+    let text = "";
+    for (let k = 0; k < bytes.length; k += 3 * 8192) text += btoa(String.fromCharCode(...bytes.subarray(k, k + 3 * 8192)));
+    return text;
+  };
+
+  // Milliseconds of each frame while the seat turns, and the size in which it is drawn; then of rest.
+  const drag = (frames) => {
+    const times = [];
+    let size = [0, 0];
+    const still = { ...scene.camera.state };
+    for (let k = 0; k < frames; ++k) {
+      scene.camera.turn(0.02, 0);
+      const before = performance.now();
+      size = renderer.move(shown());
+      times.push(performance.now() - before);
+    }
+    const before = performance.now();
+    while (renderer.rest(shown()));
+    scene.camera.state = still;
+    return { times, size, rest: performance.now() - before, samples: renderer.done };
+  };
+  const { faces } = renderer.mesh;
+  return { opened, picture, drag, triangles: faces.length / 3 };
+}
+
+window.probed = start();
