@@ -5,6 +5,7 @@ from seatlook.errors import InputError
 from seatlook.solver import Load, Moment, Sheet, SheetSettings, Support, solve_sheet
 from seatlook.solver.element.elastic import ElasticSheet
 from seatlook.solver.element.loads import EdgeMoment, Pressure
+from seatlook.solver.element.shell import Shell
 from support import fabrics, meshes, taylor
 from support.reference.elastica import blown_tip
 from support.reference.shells import half_cylinder, ring, rolled_by_a_moment
@@ -86,7 +87,7 @@ def test_a_mask_of_directions_is_one_for_each_vertex():
 def test_gradient_and_hessian_of_a_moment_agree():
     X, T = meshes.rectangle("uns", 1.0, 0.4, 0.2)
     end = X[:, 0] > 1.0 - 1e-9
-    s = ElasticSheet(X, T, np.zeros(len(T)), [fabrics.isotropic()], turned=end)
+    s = Shell(X, T, fabrics.isotropic(), turned=end)
     rim = s.rim_edges(end)
     flat = np.pad(X, ((0, 0), (0, 1)))
     slopes = s.slopes_across(rim)

@@ -13,6 +13,7 @@ from seatlook.errors import InputError, SolverError
 from seatlook.model import Fabric, FloatArray, IntArray
 from seatlook.solver.element.elastic import ElasticSheet
 from seatlook.solver.element.loads import DeadLoad, EdgeMoment, Pressure
+from seatlook.solver.element.shell import Shell
 from seatlook.solver.energy import Energy
 from seatlook.solver.methods.choice import method_of
 from seatlook.solver.methods.explicit import UnstableStepError
@@ -238,16 +239,14 @@ def solve_sheet(
     """
     first, peaks = _start(sheet, start)
     held = support.held(len(first))
-    panel = np.zeros(len(sheet.faces), dtype=np.int64)
-    elastic = ElasticSheet(
+    elastic = Shell(
         sheet.rest,
         sheet.faces,
-        panel,
-        [sheet.fabric],
-        clamped=support.directed(len(first)),
-        positions=first,
+        sheet.fabric,
         natural=sheet.natural,
         turned=load.turned(len(first)),
+        clamped=support.directed(len(first)),
+        positions=first,
     )
     if peaks is not None:
         elastic.membrane.remember(peaks)
@@ -325,7 +324,7 @@ def _start(
     return np.array(start, dtype=np.float64, order="C"), None
 
 
-def _outer(sheet: ElasticSheet, load: Load, share: float, x: FloatArray) -> list[Energy]:
+def _outer(sheet: Shell, load: Load, share: float, x: FloatArray) -> list[Energy]:
     """Energies of a share of the load, on a sheet that now lies at ``x``."""
     force = np.outer(sheet.mass, load.gravity)
     if load.forces is not None:
@@ -341,12 +340,12 @@ def _outer(sheet: ElasticSheet, load: Load, share: float, x: FloatArray) -> list
     return energies
 
 
-def _check_moments(sheet: ElasticSheet, load: Load, support: Support) -> None:
+def _check_moments(sheet: Shell, load: Load, support: Support) -> None:
     """Refuse a moment that acts on no edge, or on one whose direction is held."""
     directed = support.directed(len(sheet.mass))
     for moment in load.moments:
         edges = sheet.rim_edges(moment.edge)
-        held = np.intersect1d(edges, sheet.rim_edges(directed))
+        held = np.zeros(0) if directed is None else np.intersect1d(edges, sheet.rim_edges(directed))
         if len(held) or not len(edges):
             got = f"{len(held)} edges that are clamped or guided" if len(held) else "no free edge"
             raise InputError.single("moments", got=got, expected="free edges between its vertices")

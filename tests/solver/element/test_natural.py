@@ -3,6 +3,7 @@ import pytest
 
 from seatlook.errors import InputError
 from seatlook.solver.element.elastic import ElasticSheet
+from seatlook.solver.element.shell import Shell
 from support import fabrics, meshes, naive, taylor
 
 RADIUS = 0.5
@@ -24,7 +25,7 @@ def shell(shape, kind="uns", h=0.1, fabric=None, **options):
     X, T = meshes.rectangle(kind, 1.0, 0.8, h)
     natural = shape(X)
     fabric = fabric or fabrics.isotropic(poisson=0.3)
-    return X, natural, ElasticSheet(X, T, np.zeros(len(T)), [fabric], natural=natural, **options)
+    return X, natural, Shell(X, T, fabric, natural=natural, **options)
 
 
 def gradient(energy, x):
@@ -113,7 +114,7 @@ def test_shape_is_measured_with_a_rate_and_a_bound():
     sizes, errors = np.array([0.2, 0.1, 0.05]), []
     for h in sizes:
         X, _, s = shell(cylinder, h=h)
-        length = abs(s._shape.measure - np.eye(3)).max()
+        length = abs(s.shape.measure - np.eye(3)).max()
         flat = np.pad(X, ((0, 0), (0, 1)))
         inner = ~s.edges.free[s.edges.of_face].any(axis=1)
         bend = abs(s.curvatures(flat)[inner, 1, 1] + 1 / RADIUS).max()
@@ -157,10 +158,7 @@ def test_a_shape_that_is_flat_changes_nothing():
     X, T = meshes.rectangle("uns", 1.0, 0.8, 0.15)
     flat = np.pad(X, ((0, 0), (0, 1)))
     x = flat + 0.02 * np.random.default_rng(5).standard_normal(flat.shape)
-    plain, same = (
-        ElasticSheet(X, T, np.zeros(len(T)), [fabrics.woven()], natural=natural)
-        for natural in (None, flat)
-    )
+    plain, same = (Shell(X, T, fabrics.woven(), natural=natural) for natural in (None, flat))
     for one, other in zip(plain.energies, same.energies, strict=True):
         assert one.value(x, np.zeros_like(x)) == pytest.approx(other.value(x, np.zeros_like(x)))
         np.testing.assert_allclose(gradient(one, x), gradient(other, x), rtol=1e-9, atol=1e-9)
@@ -172,9 +170,7 @@ def test_fabric_and_size_do_not_depend_on_the_map():
     Y = np.column_stack([X[:, 0], np.arctanh(np.sin(X[:, 1]))])
     energies = []
     for rest in (X, Y):
-        s = ElasticSheet(
-            rest, T, np.zeros(len(T)), [fabrics.isotropic(poisson=0.3)], natural=ball(X)
-        )
+        s = Shell(rest, T, fabrics.isotropic(poisson=0.3), natural=ball(X))
         x = 1.05 * ball(X)
         zero = np.zeros_like(x)
         energies.append([s.mass.sum(), s.membrane.value(x, zero), s.bending.value(x, zero)])
@@ -195,4 +191,4 @@ def test_fabric_and_size_do_not_depend_on_the_map():
 def test_a_shape_that_is_none_is_refused(natural, message):
     X, T = meshes.rectangle("right", 1.0, 1.0, 1.0)
     with pytest.raises(InputError, match=message):
-        ElasticSheet(X, T, np.zeros(len(T)), [fabrics.isotropic()], natural=natural)
+        Shell(X, T, fabrics.isotropic(), natural=natural)

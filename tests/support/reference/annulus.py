@@ -13,19 +13,28 @@ THIN, PRINTED = np.array([13.84, 17.48]), np.array([13.891, 17.528])
 _SLIT = 1e-6  # rad, between its two edges
 
 
-def uniform(h, seed=0):
-    """Rest, faces, and the vertices of the clamped and of the lifted edge, from ``triangulate``."""
+def uniform(h, seed=0, *, hold_area=False):
+    """Rest, faces, and the vertices of the clamped and of the lifted edge, from ``triangulate``.
+
+    Vertices of the rims lie on the circles, or so that the polygons have the circles' areas.
+    """
     outer, inner, across = (
         max(2, round(length / h))
         for length in (2 * np.pi * OUTER, 2 * np.pi * INNER, OUTER - INNER)
     )
     turn = 2 * np.pi - _SLIT
-    side = np.linspace(OUTER, INNER, across + 1)
+    wide, narrow = OUTER, INNER
+    if hold_area:
+        wide, narrow = (
+            radius * np.sqrt(2 * np.pi / count / np.sin(2 * np.pi / count))
+            for radius, count in ((OUTER, outer), (INNER, inner))
+        )
+    side = np.linspace(wide, narrow, across + 1)
     rim = np.concatenate(
         [
-            _arc(OUTER, np.linspace(0, turn, outer + 1)),
+            _arc(wide, np.linspace(0, turn, outer + 1)),
             _arc(side[1:-1], turn),
-            _arc(INNER, np.linspace(turn, 0, inner + 1)),
+            _arc(narrow, np.linspace(turn, 0, inner + 1)),
             _arc(side[-2:0:-1], 0.0),
         ]
     )

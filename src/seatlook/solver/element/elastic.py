@@ -6,16 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csc_array
 
 from seatlook.errors import InputError
 from seatlook.model import Fabric, FloatArray, Hem, IntArray
 from seatlook.solver.element.bending import Bending
-from seatlook.solver.element.curvature import Clamps, Curvature, recover_curvature, released
-from seatlook.solver.element.edgeslope import areas, edges_of, slope_rows
+from seatlook.solver.element.curvature import Clamps, Curvature, recover_curvature
+from seatlook.solver.element.edgeslope import Edges, areas, edges_of, slope_rows
 from seatlook.solver.element.hem import Folds
 from seatlook.solver.element.membrane import Membrane
-from seatlook.solver.element.natural import NaturalShape, natural_shape
+from seatlook.solver.element.natural import NaturalShape
 from seatlook.solver.element.shell_bending import ShellBending
 from seatlook.solver.energy import Energy
 
@@ -32,10 +32,7 @@ class ElasticSheet:
     panel : (m,) int64            index into ``fabrics``
     fabrics : one Fabric for each panel
     clamped : (n,) bool           a free edge between two clamped vertices keeps the direction
-        across it that its triangle has in ``positions``, (n, 3) [m], the flat sheet if not given;
-        with a natural shape, the one that the shape has there
-    natural : (n, 3) float64 [m]  shape in space without stress; the flat sheet if not given
-    turned : (n,) bool            a free edge between two of these passes on a moment
+        across it that its triangle has in ``positions``, (n, 3) [m], the flat sheet if not given
     hem : second layer and folds along the seams
 
     Raises
@@ -53,8 +50,6 @@ class ElasticSheet:
         *,
         clamped: BoolArray | None = None,
         positions: FloatArray | None = None,
-        natural: FloatArray | None = None,
-        turned: BoolArray | None = None,
         hem: Hem | None = None,
     ) -> None:
         rest = np.array(rest, dtype=np.float64, order="C")
@@ -75,27 +70,17 @@ class ElasticSheet:
         if hem is not None:
             density, stiffness = density + hem.density, stiffness + hem.bending
         self.bending_stiffness = stiffness
-        rows = slope_rows(rest, faces, self.edges)
-        self.folds = None if hem is None else Folds(hem, self.edges, rows)
-        self.area, self._rows = areas(rest, faces), rows
-        self._loaded = self.rim_edges(turned)
-        self._shape: NaturalShape | None = None
-        if natural is None:
-            self._curvature = self._recovered(stiffness, self._clamps(clamped, positions))
-        else:
-            stiffness = self._bend(natural, clamped)
+        self._rows = slope_rows(rest, faces, self.edges)
+        self.folds = None if hem is None else Folds(hem, self.edges, self._rows)
+        self.area = areas(rest, faces)
+        self.shape: NaturalShape | None = None
+        stiffness = self._recover(stiffness, clamped, positions)
         self.mass = np.bincount(
             faces.ravel(), np.repeat(density * self.area / 3.0, 3), minlength=len(rest)
         )
-        self.membrane = Membrane(
-            self.edges, self._curvature, self.area, panel, self._fabrics, self._shape
-        )
         parts = (self.edges, self._curvature, self.area)
-        self.bending = (
-            Bending(*parts, stiffness)
-            if self._shape is None
-            else ShellBending(*parts, stiffness, self._shape)
-        )
+        self.membrane = Membrane(*parts, panel, self._fabrics, self.shape)
+        self.bending = self._bending(*parts, stiffness)
         self._sewn: csc_array | None = None
         if hem is not None and self.folds is not None:
             doubled = Bending(*parts, stiffness * (hem.density > 0.0)[:, None, None])
@@ -126,18 +111,12 @@ class ElasticSheet:
         return self.membrane.stiffness()
 
     def curvatures(self, x: FloatArray) -> FloatArray:
-        """Return kappa = -(n . x,ij) of every triangle, (m, 2, 2) [1/m]; a crown is positive.
-
-        Of a sheet with a natural shape, how much more it is bent than that.
-        """
+        """Return kappa = -(n . x,ij) of every triangle, (m, 2, 2) [1/m]; a crown is positive."""
         second = self._curvature.at(x)
         p = x[self.faces]
         normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
         normal /= np.linalg.norm(normal, axis=1)[:, None]
-        change = np.einsum("tki,ti->tk", second, normal)
-        if isinstance(self.bending, ShellBending):
-            change = np.einsum("tck,tk->tc", self.bending.measure, change - self.bending.natural)
-        return _tensors(-change)
+        return tensors(-np.einsum("tki,ti->tk", second, normal))
 
     def recovered_curvatures(self, x: FloatArray) -> FloatArray:
         """Return smoother kappa of every triangle, (m, 2, 2) [1/m].
@@ -157,7 +136,7 @@ class ElasticSheet:
         Top and bottom differ by the thickness times the recovered curvature.
         """
         x = np.array(x, dtype=np.float64, order="C")
-        mid = _tensors(self.membrane.strain(x))
+        mid = tensors(self.membrane.strain(x))
         part = 0.5 * self.thickness[:, None, None] * self.recovered_curvatures(x)
         return mid + part, mid, mid - part
 
@@ -170,51 +149,31 @@ class ElasticSheet:
         around = np.maximum(np.bincount(corners, weight, minlength=n), np.finfo(float).tiny)
         return np.asarray((total / around[:, None]).reshape(-1, 2, 2))
 
-    def rim_edges(self, mask: BoolArray | None) -> IntArray:
+    def rim_edges(self, mask: BoolArray) -> IntArray:
         """Free edges (k,) between two vertices of ``mask`` (n,)."""
-        if mask is None:
-            return np.zeros(0, dtype=np.int64)
         return np.flatnonzero(self.edges.free & mask[self.edges.ends].all(axis=1))
 
-    def slopes_across(self, edges: IntArray) -> csr_array:
-        """Matrix (k, n) [1/m] from positions to the slopes across ``edges`` (k,)."""
-        rows = self._rows
-        index = (rows.weights, rows.nodes, rows.start)
-        whole = csr_array(index, shape=(len(self.edges.ends), len(self.rest)))
-        return csr_array(whole[edges])
-
-    def _bearing(self) -> IntArray:
-        """Free edges that pass on a moment: their slope is the recovered one."""
-        return self._loaded if self.folds is None else np.union1d(self._loaded, self.folds.edges)
+    def _recover(
+        self, stiffness: FloatArray, clamped: BoolArray | None, positions: FloatArray | None
+    ) -> FloatArray:
+        """Recover second derivatives; return the bending matrices (m, 3, 3) that go with them."""
+        clamps = self._clamps(clamped, positions)
+        sewn = None if self.folds is None else self.folds.edges
+        self._curvature = self._recovered(stiffness, clamps, sewn)
+        return stiffness
 
     def _recovered(
-        self, stiffness: FloatArray, clamps: Clamps | None, *, loose: bool = True
+        self, stiffness: FloatArray, clamps: Clamps | None, sewn: IntArray | None
     ) -> Curvature:
-        """Second derivatives; free edges that bear no moment turn as they like if ``loose``."""
         return recover_curvature(
-            len(self.rest),
-            self.edges,
-            self._rows,
-            self.area,
-            stiffness,
-            clamps,
-            self._bearing() if loose else np.flatnonzero(self.edges.free),
+            len(self.rest), self.edges, self._rows, self.area, stiffness, clamps, sewn
         )
 
-    def _bend(self, natural: FloatArray, clamped: BoolArray | None) -> FloatArray:
-        """Take a natural shape; return the bending matrices (m, 3, 3) for the flat mesh."""
-        plain = self._recovered(self.bending_stiffness, None, loose=False)
-        shape = natural_shape(natural, self.rest, self.faces, self.edges, plain)
-        held = self.rim_edges(clamped)
-        slopes = self.slopes_across(held) @ shape.positions
-        clamps = Clamps(held, slopes, shape.positions)
-        within = shape.covariant(self._recovered(self.bending_stiffness, clamps, loose=False))
-        stiffness = np.swapaxes(shape.measure, 1, 2) @ self.bending_stiffness @ shape.measure
-        loose = self.edges.free.copy()
-        loose[held] = loose[self._bearing()] = False
-        self._curvature = released(within, self.edges, stiffness, loose)
-        self._shape, self.area = shape, self.area * shape.stretch
-        return np.asarray(stiffness)
+    def _bending(
+        self, edges: Edges, curvature: Curvature, area: FloatArray, stiffness: FloatArray
+    ) -> Bending | ShellBending:
+        """The term of the potential that resists bending."""
+        return Bending(edges, curvature, area, stiffness)
 
     def _clamps(self, clamped: BoolArray | None, positions: FloatArray | None) -> Clamps | None:
         """Free edges between clamped vertices, with the slope of their own plane triangle."""
@@ -229,7 +188,7 @@ class ElasticSheet:
         return Clamps(edges=held, slopes=slopes, positions=x)
 
 
-def _tensors(components: FloatArray) -> FloatArray:
+def tensors(components: FloatArray) -> FloatArray:
     """(m, 2, 2) tensors of (11, 22, 2 x 12) components."""
     a, b, c = components.T
     return np.ascontiguousarray(np.stack([a, 0.5 * c, 0.5 * c, b], axis=1).reshape(-1, 2, 2))

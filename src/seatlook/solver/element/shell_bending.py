@@ -63,6 +63,13 @@ class ShellBending:
         np.subtract.at(gradient, self._faces, turn)
         return 0.5 * float((change * moment).sum())
 
+    def change(self, x: FloatArray) -> FloatArray:
+        """Curvature along the normals less the natural one, (m, 3) of (11, 22, 2 x 12) [1/m]."""
+        normal, _ = normals(x, self._faces)
+        change, _ = self._strained(x, normal)
+        along = np.einsum("tci,ti->tc", change.reshape(-1, 3, 3), normal)
+        return np.asarray(np.einsum("tck,tk->tc", self.measure, along))
+
     def stiffness(self) -> csc_array:
         """Matrix (n, n) [N/m] of the second derivatives alone."""
         return self._plain.stiffness()
