@@ -10,7 +10,14 @@ from seatlook import io
 from seatlook.assembly import with_mesh
 from seatlook.assembly.digest import content_digest
 from seatlook.chain.case import Case
-from seatlook.chain.local import BEFORE, coarser, coarsest_size, finest_size, forecast
+from seatlook.chain.local import (
+    BEFORE,
+    coarser,
+    coarsest_size,
+    finest_size,
+    forecast,
+    with_scatter,
+)
 from seatlook.errors import InputError
 from seatlook.results.resolution import ASKED, CURVATURE_ERROR, REACHED
 from seatlook.solver import foam_wavelength
@@ -111,6 +118,16 @@ def test_a_result_stands_for_its_scene_alone(solved, tmp_path):
     assert not Case(with_mesh(solved.scene, tolerance=0.3)).reuse(path)
     assert not Case(coarser(solved.scene)).reuse(path)
     assert io.read_result(path).figures[ASKED] == 0.4
+
+
+def test_scatter_is_that_of_seeds_on_the_first_mesh(solved):
+    scattered = with_scatter(solved.scene, solved.solution, seeds=2)
+    rows = Case(solved.scene, solution=scattered).assessment.zones
+    assert all(row.w2_scatter is not None and row.w2_scatter >= 0.0 for row in rows)
+    before = {row.zone: row.w2_mesh_error for row in solved.assessment.zones}
+    assert {row.zone: row.w2_mesh_error for row in rows} == before
+    with pytest.raises(InputError, match="seeds: got 1, expected 2 or more"):
+        with_scatter(solved.scene, solved.solution, seeds=1)
 
 
 def test_stages_are_kept_on_the_last_mesh_and_resumed_to_the_same_bits(solved, tmp_path):

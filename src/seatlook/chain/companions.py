@@ -17,6 +17,7 @@ from seatlook.wrinkle.zone import companion_keys
 SURE = 0.95  # of single solves that differ from the mean of all seeds by less than the scatter
 ORDERS = (1.0, 2.0)  # between which means converge: of a kink, and of a smooth wave
 _CAUTION = 0.4  # by which an observed order is taken lower: scatter makes it uncertain
+SEEDS = 5  # that tell the scatter
 _SEEDS = "scatter_seeds"  # figure of a result
 _POWER = 0.8  # chance to see a difference that is there, of the number of seeds
 

@@ -18,11 +18,11 @@ from seatlook import io
 from seatlook.assembly import assemble, with_mesh
 from seatlook.assembly.grading import Grading
 from seatlook.chain.assess import assess
-from seatlook.chain.companions import ZoneMean, with_companions
+from seatlook.chain.companions import SEEDS, ZoneMean, scatter, with_companions
 from seatlook.chain.files import earlier_result
 from seatlook.chain.timeline import solve_in_stages
 from seatlook.errors import InputError
-from seatlook.model import Cover, FloatArray, Scene, Solution, criteria_of
+from seatlook.model import Cover, Criteria, FloatArray, Scene, Solution, criteria_of
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import FIRST_SIZE, TOLERANCES
 from seatlook.model.zones import FREE_EDGE
@@ -198,9 +198,9 @@ def with_error(scene: Scene, fine: Solution, coarse: Solution) -> Solution:
     the error over all zones but free edges: the root mean square of their errors over their means,
     or over 0.02 if that is more, weighted by area.
     """
-    criteria = criteria_of(fine.cover.materials, scene.curvature, default=scene.c_threshold)
     rows, before = (
-        {row.zone: row for row in assess(solution, criteria).zones} for solution in (fine, coarse)
+        {row.zone: row for row in assess(solution, _criteria(scene, solution)).zones}
+        for solution in (fine, coarse)
     )
     size, estimate = zone_sizes(fine.cover, _w2(scene, fine))
     size_before, _ = zone_sizes(coarse.cover, _w2(scene, coarse))
@@ -217,6 +217,45 @@ def with_error(scene: Scene, fine: Solution, coarse: Solution) -> Solution:
     reached = math.sqrt(float(area @ share**2 / area.sum())) if len(inner) else 0.0
     figures = {**fine.figures, ASKED: _asked(scene), REACHED: reached}
     return with_companions(replace(fine, figures=MappingProxyType(figures)), zones)
+
+
+def with_scatter(
+    scene: Scene, solution: Solution, *, seeds: int = SEEDS, progress: Progress = silent
+) -> Solution:
+    """Measure what other seeds would give, and keep it among the figures of a result.
+
+    They are solved from their start, on the first mesh: begun from a shape at rest, a cover stays
+    in the folds that it has. The share of the means by which they scatter there counts.
+
+    Parameters
+    ----------
+    solution : of ``solve_scene``
+    seeds : 2 or more
+
+    Raises
+    ------
+    InputError, SolverError   fewer seeds, and as ``solve_scene``
+    """
+    if seeds < 2:
+        raise InputError.single("seeds", got=seeds, expected="2 or more")
+    while scene.tolerance is not None:
+        scene = coarser(scene)
+    others = []
+    for k in range(seeds):
+        show = _part(progress, k / seeds, (k + 1) / seeds)
+        other = solve_scene(with_mesh(scene, seed=scene.seed + k), progress=show)
+        others.append(assess(other, _criteria(scene, other)).zones)
+    own = assess(solution, _criteria(scene, solution)).zones
+    zones = [
+        ZoneMean(
+            row.zone,
+            row["w2_mean"],
+            math.nan if row.w2_mesh_error is None else row.w2_mesh_error,
+            scatter(others, row),
+        )
+        for row in own
+    ]
+    return with_companions(solution, zones, seeds)
 
 
 def _solved(
@@ -270,9 +309,12 @@ def _part(progress: Progress, begin: float, end: float) -> Progress:
     return show
 
 
+def _criteria(scene: Scene, solution: Solution) -> Criteria:
+    return criteria_of(solution.cover.materials, scene.curvature, default=scene.c_threshold)
+
+
 def _w2(scene: Scene, solution: Solution) -> FloatArray:
-    criteria = criteria_of(solution.cover.materials, scene.curvature, default=scene.c_threshold)
-    return assess(solution, criteria).values("w2")
+    return assess(solution, _criteria(scene, solution)).values("w2")
 
 
 def _asked(scene: Scene) -> float:

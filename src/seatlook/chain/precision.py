@@ -12,6 +12,7 @@ import numpy as np
 from seatlook.assembly import with_mesh
 from seatlook.chain.case import Case
 from seatlook.chain.companions import (
+    SEEDS,
     ZoneMean,
     compare_means,
     mesh_errors,
@@ -30,7 +31,6 @@ _RATIO = math.sqrt(2.0)  # of neighbouring element sizes: half the work
 _STEP = 0.02  # s, of the process, which errs by _STEP_ERROR
 _STEP_ERROR = 0.02  # the demo at 20 mm: 4 % between 0.04 and 0.02 s, 0.4 % between 0.02 and 0.01
 _MOST_VERTICES = 60_000
-SEEDS = 5  # of the coarsest mesh, each a quarter of the finest one's work
 
 
 @dataclass(frozen=True, slots=True)

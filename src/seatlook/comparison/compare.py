@@ -13,7 +13,7 @@ from seatlook.chain.case import Case
 from seatlook.chain.companions import differs, seeds_for
 from seatlook.chain.draw import map_ends
 from seatlook.chain.files import RESULT
-from seatlook.chain.precision import solve_to
+from seatlook.chain.local import with_scatter
 from seatlook.comparison.cells import Cell, Contrast, cell_table
 from seatlook.errors import InputError, did_you_mean
 from seatlook.files import file_names
@@ -276,21 +276,24 @@ def at_equal_error(
     """Solve each variant to one relative error of its zone means, on a mesh of its own.
 
     Materials are compared at equal error, not at equal element size. The results carry their
-    errors, so that ``Comparison.judged`` can say what differs.
+    errors and the scatter over seeds, so that ``Comparison.judged`` can say what differs.
 
     Raises
     ------
     InputError
-        As ``solve_to``, and what ``Case.check`` finds, before the first solve.
+        A tolerance out of bounds, and what ``Case.check`` finds, before the first solve.
     SolverError
     """
-    for case in variants.values():
+    cases = {
+        name: Case(with_mesh(case.scene, tolerance=tolerance)) for name, case in variants.items()
+    }
+    for case in cases.values():
         case.check()
     result = {}
-    for name, case in variants.items():
-        precise = solve_to(case.scene, tolerance, progress=progress)
-        made = with_mesh(case.scene, element_size=precise.plan.element_size)
-        result[name] = Case(made, solution=precise.solution)
+    for name, case in cases.items():
+        solution = case.solve(progress=progress)
+        scattered = with_scatter(case.scene, solution, progress=progress)
+        result[name] = Case(case.scene, solution=scattered)
     return result
 
 
