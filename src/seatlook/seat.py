@@ -17,6 +17,7 @@ from seatlook.chain.run_folder import run_folder
 from seatlook.comparison.compare import Comparison, Variant, compare, named_cases
 from seatlook.comparison.visibility import VariantScores, score_variants
 from seatlook.errors import InputError
+from seatlook.improvement.propose import Proposals, propose
 from seatlook.model import Camera, Rig, Scene
 from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES
@@ -156,6 +157,22 @@ class Seat(Case):
         InputError, SolverError
         """
         return solve_to(self.scene, tolerance, progress=progress)
+
+    def propose(self, *, count: int = 3) -> Proposals:
+        """Say which corrections of pattern, hooks and foam would help most, in millimetres.
+
+        Parameters
+        ----------
+        count : of them at most; each counts on those before it being made
+
+        Raises
+        ------
+        InputError
+            All is frozen by [improve].
+        SolverError
+            The result is not converged, or its balance is unstable.
+        """
+        return propose(self.scene, self.assessment, count=count)
 
     def timeline(
         self,

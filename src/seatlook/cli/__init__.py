@@ -7,6 +7,7 @@ from seatlook.cli import (
     _evaluate,
     _flatten,
     _identify,
+    _improve,
     _init,
     _jury,
     _machine,
@@ -36,6 +37,7 @@ app.command(_making.hooks)
 app.command(_shape.shape)
 app.command(_precision.precision)
 app.command(_wrinkle.wrinkle)
+app.command(_improve.improve)
 app.command(_compare.compare)
 app.command(_sweep.sweep)
 app.command(_render.render)

@@ -196,6 +196,28 @@ class Verdict:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Freedom:
+    """What a correction may change, and by how much.
+
+    Parameters
+    ----------
+    frozen : names of edges, of seams with all their edges, of hooks, wires, and of panels below
+        which the foam stays
+    edge, length, hook, foam : float [m]
+        largest offset of an edge, change of its length, of a hook's depth, of the foam's height;
+        0 freezes all of a kind
+    symmetric : what mirrors each other moves together where both gain by it
+    """
+
+    frozen: tuple[str, ...] = ()
+    edge: float = 0.005
+    length: float = 0.015
+    hook: float = 0.010
+    foam: float = 0.010
+    symmetric: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
     """The shape that the finished cover is to have.
 
@@ -257,6 +279,7 @@ class Scene:
     )
     boxes: tuple[ZoneBox, ...] = ()
     limits: tuple[Limit, ...] = ()
+    improve: Freedom = field(default_factory=Freedom)
     design: Design | None = None
     hem: bool = False
     allowed: tuple[str, ...] = ()

@@ -147,7 +147,7 @@ def low_passed(
     if not moved.any():
         return smooth
     node, faces, near = _two_rings(moved, cover.faces)
-    stiffness, mass = _laplacian(cover.rest[node], faces, len(node))
+    stiffness, mass = laplacian(cover.rest[node], faces, len(node))
     length4 = float((1.0 if field.ndim else field / (2 * np.pi)) ** 4)
     if field.ndim:
         length = field[near] / (2 * np.pi)
@@ -195,7 +195,7 @@ def _held(cover: Cover) -> np.ndarray:
     return held
 
 
-def _laplacian(rest: FloatArray, faces: IntArray, n: int) -> tuple[csc_array, FloatArray]:
+def laplacian(rest: FloatArray, faces: IntArray, n: int) -> tuple[csc_array, FloatArray]:
     """Cotangent stiffness (n, n) and lumped mass (n,) [m2] of the flat panels."""
     corner = angles(rest, faces)
     cotangent = 1.0 / np.tan(corner)

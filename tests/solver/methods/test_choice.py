@@ -138,7 +138,7 @@ def test_hessian_of_the_state_is_the_derivative_of_its_gradient():
     process = Process(laid())
     process.x[:, 2] = -0.001 + 0.0002 * np.sin(60.0 * process.x[:, 0])
     process.begin(rest=True)
-    process._lag()
+    process.lag()
     rng = np.random.default_rng(0)
     way = 1e-7 * rng.standard_normal(process.state.shape)
     way.ravel()[4 * len(process.x) :] = 0.0

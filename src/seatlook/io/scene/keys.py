@@ -174,6 +174,16 @@ KEYS: dict[str, Kind] = {
             )
         }
     ),
+    "improve": Table(
+        {
+            "frozen": Texts(default=()),
+            "edge_mm": Number(low=0, high=50, scale=MM, default=5.0),
+            "length_mm": Number(low=0, high=100, scale=MM, default=15.0),
+            "hook_mm": Number(low=0, high=50, scale=MM, default=10.0),
+            "foam_mm": Number(low=0, high=50, scale=MM, default=10.0),
+            "symmetric": Flag(default=True),
+        }
+    ),
     "wrinkle": Table(
         {
             "curvature": Text(choices=("tensor", "paper"), default="tensor"),

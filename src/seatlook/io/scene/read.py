@@ -29,7 +29,14 @@ from seatlook.io.scene.checks import (
 )
 from seatlook.io.scene.files import SceneFiles
 from seatlook.io.scene.keys import AS_BUILT, scene_keys
-from seatlook.io.scene.ties import make_boxes, make_frames, make_hooks, make_limits, make_stages
+from seatlook.io.scene.ties import (
+    make_boxes,
+    make_frames,
+    make_freedom,
+    make_hooks,
+    make_limits,
+    make_stages,
+)
 from seatlook.io.scene.views import make_cameras, make_rigs
 from seatlook.io.schema import known, read_table, shown
 from seatlook.io.surface.design import read_surface
@@ -154,6 +161,7 @@ class _Reader:
             "hooks": make_hooks(document, row, pattern, foam),
             "frames": make_frames(document, row, pattern, foam),
             "limits": make_limits(document, row["accept"], pattern, boxes),
+            "improve": make_freedom(document, row, pattern, foam),
             "rigs": make_rigs(document, row["rig"], self.files),
             "cameras": make_cameras(document, row["camera"], foam),
         }

@@ -25,7 +25,7 @@ from seatlook.model import (
     ZoneBox,
     stage_units,
 )
-from seatlook.model.scene import SCORE_MEASURES
+from seatlook.model.scene import SCORE_MEASURES, Freedom
 from seatlook.model.zones import FREE_EDGE, built_in_zones, zones
 
 Row = dict[str, Any]
@@ -234,4 +234,31 @@ def make_limits(
         for zone, row in rows.items()
         for measure, maximum in row.items()
         if maximum is not None
+    )
+
+
+def make_freedom(
+    document: Document, row: Row, pattern: Pattern | None, foam: Foam | None
+) -> Freedom:
+    """Build [improve]: what a correction may change."""
+    own = row["improve"]
+    if pattern is not None and foam is not None:
+        names = [
+            *pattern.edges,
+            *(seam.name for seam in pattern.seams),
+            *(panel.name for panel in pattern.panels),
+            *foam.curves,
+            *(hook["name"] for hook in row["hook"]),
+        ]
+        for name in own["frozen"]:
+            known(
+                document, ("improve", "frozen"), name, names, "an edge, seam, hook, wire or panel"
+            )
+    return Freedom(
+        frozen=tuple(own["frozen"]),
+        edge=own["edge_mm"],
+        length=own["length_mm"],
+        hook=own["hook_mm"],
+        foam=own["foam_mm"],
+        symmetric=own["symmetric"],
     )

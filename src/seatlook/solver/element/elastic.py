@@ -130,6 +130,37 @@ class ElasticSheet:
             total = total + part
         return np.asarray(total[self.faces].mean(axis=1))
 
+    def curvature_back(self, x: FloatArray, values: FloatArray) -> FloatArray:
+        """Transposed derivative (n, 3) of ``recovered_curvatures`` at ``x``.
+
+        Parameters
+        ----------
+        values : (m, 2, 2) symmetric; its product with the curvatures is what is derived
+        """
+        part = total = self._from_vertices(values)
+        for _ in range(2):
+            part = part - self._from_vertices(part)
+            total = total + part
+        second = self._curvature.at(x)
+        p = x[self.faces]
+        a, b = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+        cross = np.cross(a, b)
+        size = np.linalg.norm(cross, axis=1)[:, None]
+        normal = cross / size
+        # Of (kappa11, kappa22, 2 kappa12).
+        pull = np.stack([total[:, 0, 0], total[:, 1, 1], total[:, 0, 1]], axis=1)
+        if isinstance(self.bending, ShellBending):
+            pull = np.einsum("tck,tc->tk", self.bending.measure, pull)
+        out = self._curvature.back(-pull[:, :, None] * normal[:, None, :])
+        turn = -np.einsum("tk,tki->ti", pull, second)
+        turn -= np.einsum("ti,ti->t", turn, normal)[:, None] * normal
+        turn /= size
+        sides = np.cross(b, turn), np.cross(turn, a)
+        np.add.at(out, self.faces[:, 1], sides[0])
+        np.add.at(out, self.faces[:, 2], sides[1])
+        np.subtract.at(out, self.faces[:, 0], sides[0] + sides[1])
+        return out
+
     def strains(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Green strain on the top, mid and bottom surface, each (m, 2, 2) in warp/weft axes [1].
 
@@ -174,6 +205,16 @@ class ElasticSheet:
     ) -> Bending | ShellBending:
         """The term of the potential that resists bending."""
         return Bending(edges, curvature, area, stiffness)
+
+    def _from_vertices(self, values: FloatArray) -> FloatArray:
+        """Transpose of averaging faces (m, 2, 2) at the vertices and these in the faces again."""
+        corners, n = self.faces.ravel(), len(self.mass)
+        weight = np.repeat(self.area, 3)
+        flat = np.repeat(values.reshape(-1, 4) / 3.0, 3, axis=0)
+        total = np.stack([np.bincount(corners, column, minlength=n) for column in flat.T], axis=1)
+        around = np.maximum(np.bincount(corners, weight, minlength=n), np.finfo(float).tiny)
+        share = (total / around[:, None])[self.faces].sum(axis=1)
+        return np.asarray((self.area[:, None] * share).reshape(-1, 2, 2))
 
     def _clamps(self, clamped: BoolArray | None, positions: FloatArray | None) -> Clamps | None:
         """Free edges between clamped vertices, with the slope of their own plane triangle."""

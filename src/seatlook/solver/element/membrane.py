@@ -146,6 +146,16 @@ class Membrane:
         )
         return float(energy)
 
+    def back(self, x: FloatArray, values: FloatArray) -> FloatArray:
+        """Return the transposed derivative (n, 3) of ``strain`` at ``x``, of values (m, 3)."""
+        self._deform(x)
+        self._pull_edges(np.array(values, order="C"))
+        out = np.zeros_like(x)
+        kernels.forces(
+            x, self._pull, self._edges.ends, self._edges.length, *self._rows, self._bow, out
+        )
+        return out
+
     def hessian(self, x: FloatArray, *, definite: bool = False) -> csc_array:
         """Second derivative (3n, 3n) [N/m]; ``definite`` keeps the tensile part of the stress."""
         self._deform(x)

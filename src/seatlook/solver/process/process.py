@@ -156,14 +156,14 @@ class Process:
         """Advance by one time step; ``refactor`` renews what is made from the stiffness."""
         self.time = step.time
         self.ties.pull(self.x, step.before, step.progress)
-        self._lag()
+        self.lag()
         if isinstance(self.method, Explicit):
             return self._integrate(self.method, refactor=refactor)
         np.multiply(self.v, _CARRIED_VELOCITY * self.dt, out=self.inertia.free)
         self.inertia.free += self.x
         if refactor or self._factor is None:
             self._factor = self._preconditioner(Factor)
-        limit = _STEP_TOLERANCE * self._force_scale()
+        limit = _STEP_TOLERANCE * self.force_scale()
         return self._descend(self._factor, limit, self.iterations)
 
     def begin(self, *, rest: bool = False) -> None:
@@ -178,9 +178,9 @@ class Process:
     def approach_rest(self, dt: float, record: Record, iterations: int) -> Record:
         """Minimise from rest with an inertia of step ``dt``, hardly felt when that is long."""
         self.inertia.set_step(dt)
-        self._lag()
+        self.lag()
         np.copyto(self.inertia.free, self.x)
-        limit = max(_REST_TOLERANCE, 0.02 * record.residual) * self._force_scale()
+        limit = max(_REST_TOLERANCE, 0.02 * record.residual) * self.force_scale()
         self._factor = self._preconditioner(self._split)
         record = self._descend(self._factor, limit, iterations)
         if self._evaluations > _BACKTRACKING * record.iterations:
@@ -189,8 +189,8 @@ class Process:
 
     def record(self, iterations: int = 0) -> Record:
         """Measure the state with nothing lagging: the balance is that of forces at ``x``."""
-        self._lag()
-        scale = self._force_scale()
+        self.lag()
+        scale = self.force_scale()
         elastic = self._sheet_energy()
         foam = 0.0
         if self.foundation is not None:
@@ -230,6 +230,17 @@ class Process:
         values = [self._static.value(side, self._work) for side in sides]
         np.copyto(self.state, sides[int(np.argmin(values))])
         return True
+
+    def forces(self) -> FloatArray:
+        """Gradient (rows of the state, 3) [N] of all but inertia; what lags is as it was."""
+        gradient = np.empty_like(self.state)
+        self._static.value(self.state, gradient)
+        return gradient
+
+    def stiffness(self) -> csc_array:
+        """Second derivative of the same over the flattened state [N/m], exact, not projected."""
+        self.forces()  # columns of the foam know their slope at the last shape that was measured
+        return self._static.hessian(self.state)
 
     def resultants(self) -> dict[str, FloatArray]:
         """Sum of the forces on the cover by cause, each (3,) [N]."""
@@ -294,7 +305,8 @@ class Process:
         self.ties.update(self.x)
         return record
 
-    def _lag(self) -> None:
+    def lag(self) -> None:
+        """Let all that lags agree with the state: history, wires, normal forces, anchors."""
         self.sheet.membrane.wear(self.x)
         self.ties.lag(self.x)
         if self.foundation is not None:
@@ -324,7 +336,7 @@ class Process:
         self.foundation.contact.update(self.state)
         return self.foundation.extend(nearest)
 
-    def _force_scale(self) -> float:
+    def force_scale(self) -> float:
         """Mean over the vertices of the elastic force [N], or of the weight if that is more.
 
         A sheet that lies level has weight but no elastic forces.

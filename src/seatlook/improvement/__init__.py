@@ -1,0 +1,1 @@
+"""A pattern changed a little: solved from the last balance, ranked by gain, corrected in mm."""
