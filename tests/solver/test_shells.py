@@ -1,3 +1,5 @@
+import importlib
+
 import numpy as np
 import pytest
 
@@ -144,6 +146,19 @@ def test_pressure_follows_a_strip_that_it_blows_up():
         errors.append(np.hypot(*(tip[[0, 2]] - blown_tip(pressure))))
     assert -np.polyfit(np.log(edges), np.log(errors), 1)[0] > 1.8
     assert errors[-1] < 2e-3
+
+
+def test_a_pressure_that_has_not_settled_is_not_called_converged(monkeypatch):
+    door = importlib.import_module("seatlook.solver.sheet")
+    monkeypatch.setattr(door, "_ROUNDS", 1)
+    X, T = meshes.rectangle("uns", 1.0, 0.2, 0.2)
+    solved = solve_sheet(
+        Sheet(X, T, fabrics.isotropic(12 / 0.01**2, 1.0, thickness=0.01)),
+        support=Support(clamped=X[:, 0] < 1e-9),
+        load=Load(pressure=3.0),
+    )
+    assert not solved.converged
+    assert solved.reason.startswith("residual ")
 
 
 def test_pressure_presses_on_every_triangle_along_its_normal():
