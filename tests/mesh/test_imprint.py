@@ -180,3 +180,31 @@ def test_narrow_faces_are_merged_and_the_line_stays_straight():
     used = np.unique(list(drawn.edges))
     x, y, _ = drawn.vertices[used].T
     assert np.abs(y - (0.1525 - 0.0125 * x)).max() < 1e-12
+
+
+def creased(seed):
+    """A sheet of steep folds, and two places on it."""
+    rng, n = np.random.default_rng(seed), 6
+    x, y = np.divmod(np.arange(n * n), n)
+    points = 0.01 * np.column_stack([x, y, 2 * (x % 2)]) + rng.normal(scale=1e-3, size=(n * n, 3))
+    a = (n * np.arange(n - 1)[:, None] + np.arange(n - 1)).ravel()
+    faces = np.concatenate(
+        [np.column_stack(k) for k in ((a, a + n, a + n + 1), (a, a + n + 1, a + 1))]
+    )
+    on = rng.choice(len(faces), 2, replace=False)
+    share = rng.dirichlet(np.ones(3), 2)[:, :, None]
+    return points, faces, (share * points[faces[on]]).sum(axis=1)
+
+
+def test_over_creases_a_line_is_drawn_or_refused():
+    """It never goes on for ever, to and fro between two vertices beside a crease."""
+    drawn, refused = 0, set()
+    for seed in range(60):
+        points, faces, line = creased(seed)
+        try:
+            imprint(points, faces, {"a": line})
+            drawn += 1
+        except InputError as error:
+            refused.add(error.problems[0].expected)
+    assert 20 < drawn < 60
+    assert refused == {"a line that stays on the surface"}

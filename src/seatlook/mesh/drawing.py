@@ -77,7 +77,8 @@ class Drawing:
         path, normal = [start], self._normal(start) + self._normal(end)
         while not self.faces_at[path[-1]] & self.faces_at[end]:
             step = self._step(path[-1], end, normal)
-            if step is None:
+            # Beside a crease the next plane may lead back; a way crosses no face twice.
+            if step is None or step in path or len(path) > len(self.first_faces):
                 x, y, z = 1e3 * self.points[path[-1]]
                 raise InputError.single(
                     key,
