@@ -12,6 +12,7 @@ from seatlook.assembly.contradictions import contradictions
 from seatlook.chain.case import Case
 from seatlook.chain.start import init
 from seatlook.errors import InputError
+from seatlook.mesh.closest import closest_places
 from seatlook.seats import write_demo
 from support.boxes import SIDES, box_scene, rounded_block
 from support.scenes import two_panels
@@ -79,6 +80,17 @@ def problems(scene):
 def named(scene, name):
     """Problems of one kind, by the name under which they can be allowed."""
     return [p for p in problems(scene) if f'allow = ["{name}"]' in p.hint]
+
+
+def assert_on_the_foam(path):
+    """The second place of what lies inside is that of the foam's surface."""
+    scene = io.load_scene(path)
+    for one in contradictions(scene, assemble(scene)):
+        (inside, surface) = one.places
+        foam = scene.foam
+        on = closest_places(surface[None], foam.vertices, foam.faces, reach=np.inf)
+        assert np.linalg.norm(on.offset) < 1e-9
+        assert np.linalg.norm(inside - surface) > 5e-3
 
 
 def line_of(path, text, *, after=0):
@@ -183,7 +195,8 @@ def test_a_frame_curve_through_the_foam(edited):
 
     path = edited("curves.toml", moved("front", inward))
     (problem,) = problems(io.load_scene(path))
-    assert re.match(r"'front', \d\d mm inside the foam at \(", problem.got)
+    assert re.match(r"'front', \d\d mm inside the foam at \(.*where its surface is at", problem.got)
+    assert_on_the_foam(path)
     assert problem.line == line_of(path, "curve = ")
 
 
@@ -237,6 +250,7 @@ def test_a_panel_that_starts_inside(edited):
     assert problem.key == "placement.INSERT"
     assert problem.line == line_of(path, "[placement.INSERT]")
     assert re.match(r"\d+ % of the panel more than 20 mm inside the foam, \d+ mm at", problem.got)
+    assert_on_the_foam(path)
 
 
 def test_a_contradiction_can_be_allowed_by_name(edited):
@@ -306,6 +320,32 @@ def test_exchanged_partners_of_a_box(box, pair):
         return seams
 
     assert "exchanged seams" in refused(sewn(box, exchange))
+
+
+@pytest.mark.parametrize(
+    ("partners", "what"),
+    [
+        ((0, 2, 4), "a surface with 1 handle;"),
+        ((1, 5, 3), "degrees at the point where these meet:"),
+    ],
+)
+def test_seams_that_no_exchange_mends_are_refused_with_places(partners, what):
+    """Three seams have each other's partners, one after the other."""
+    one, two, three = partners
+    box = box_scene(**BOXES["headrest"], spacing=0.02, element_size=0.02)
+
+    def pass_on(seams):
+        b = [seams[k].b for k in (two, three, one)]
+        for k, partner in zip(partners, b, strict=True):
+            seams[k] = dataclasses.replace(seams[k], b=partner)
+        return seams
+
+    scene = sewn(box, pass_on)
+    found = [c for c in contradictions(scene, assemble(scene)) if what in c.problem.got]
+    assert len(found) == 1
+    assert len(found[0].places) > 1
+    assert found[0].problem.got.count(") mm") == len(found[0].places)
+    assert found[0].problem.key != "seam[1]"
 
 
 @pytest.mark.parametrize("side", SIDES)

@@ -63,10 +63,10 @@ def test_a_boxed_cushion_of_every_material(material):
 @pytest.mark.parametrize("short", [0.0, 0.04])
 def test_a_boxed_cushion_with_an_ease_and_a_short_panel(ease, short):
     surface = opened(box_cushion(size=0.015))
-    result = flatten(surface, ease={"BAND-TOP": ease}, short={"BASE": short} if short else {})
-    eased = {"BAND-TOP"} | ({"BAND-BASE"} if short else set())
+    result = flatten(surface, ease={"BAND_1-TOP": ease}, short={"BASE": short} if short else {})
+    eased = {"BAND_1-TOP"} | ({"BAND_1-BASE", "BAND_2-BASE"} if short else set())
     sound(surface, result, eased=eased)
-    (seam,) = (s for s in result.seams if s.seam == "BAND-TOP")
+    (seam,) = (s for s in result.seams if s.seam == "BAND_1-TOP")
     assert seam.a == pytest.approx((1 + ease) * seam.b, rel=1e-4)
 
 

@@ -197,7 +197,7 @@ def creased(seed):
 
 
 def test_over_creases_a_line_is_drawn_or_refused():
-    """It never goes on for ever, to and fro between two vertices beside a crease."""
+    """It never goes on for ever, back and forth between two vertices beside a crease."""
     drawn, refused = 0, set()
     for seed in range(60):
         points, faces, line = creased(seed)

@@ -171,9 +171,10 @@ def _placed(uv: FloatArray, owner: IntArray, scene: Scene) -> FloatArray:
 
 def _along_grain(uv: FloatArray, owner: IntArray, panels: Sequence[Panel]) -> FloatArray:
     """Turn pattern coordinates (n, 2) so that the first axis runs along the warp."""
-    warp = np.stack([p.grain / np.hypot(*p.grain) for p in panels])[owner]
-    weft = np.column_stack([-warp[:, 1], warp[:, 0]])
-    return np.column_stack([(uv * warp).sum(axis=1), (uv * weft).sum(axis=1)])
+    turned = np.empty_like(uv)
+    for number, panel in enumerate(panels):
+        turned[owner == number] = panel.in_grain(uv[owner == number])
+    return turned
 
 
 def _imperfection(uv: FloatArray, owner: IntArray, scene: Scene) -> FloatArray:

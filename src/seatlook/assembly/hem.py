@@ -93,7 +93,7 @@ def hem_of(builder: Builder, scene: Scene, uv: FloatArray, faces: IntArray) -> H
         fabric = scene.materials[panel.name].fabric
         rows = np.flatnonzero(owner[faces[:, 0]] == i)
         share, nearest = _coverage(uv[faces[rows]], sewn)
-        tangent = _in_grain(sewn.along[nearest], panel)
+        tangent = panel.in_grain(sewn.along[nearest])
         bending[rows] = share[:, None, None] * strip_bending(fabric, tangent)
         density[rows] = share * fabric.density
         vertices = np.flatnonzero(owner == i)
@@ -143,12 +143,6 @@ def _nearest(sewn: _Sewn, points: FloatArray) -> tuple[FloatArray, IntArray]:
 def _ramp(distance: FloatArray, width: FloatArray, h: FloatArray) -> FloatArray:
     """1 over the allowance, falling to 0 over one element: a sheet bridges the step."""
     return np.clip((width + 0.5 * h - distance) / h, 0.0, 1.0) * (width > _STEP)
-
-
-def _in_grain(vectors: FloatArray, panel: Panel) -> FloatArray:
-    """Turn pattern vectors (k, 2) into the panel's warp/weft axes."""
-    warp = panel.grain / np.hypot(*panel.grain)
-    return np.asarray(vectors @ np.column_stack([warp, [-warp[1], warp[0]]]))
 
 
 def _folds(builder: Builder, scene: Scene, uv: FloatArray) -> dict[str, Any]:
@@ -203,7 +197,7 @@ def _side(
         edges.append(np.column_stack([line.vertices[:-1], line.vertices[1:]]))
         panel = builder.pattern.panel(builder.pattern.edges[name].panel)
         step = np.diff(uv[line.vertices], axis=0)
-        along = _in_grain(step / np.linalg.norm(step, axis=1, keepdims=True), panel)
+        along = panel.in_grain(step / np.linalg.norm(step, axis=1, keepdims=True))
         normal = np.column_stack([along[:, 1], -along[:, 0]])
         stiffness.append(fold_stiffness(scene.materials[panel.name].fabric, normal))
     return _Side(

@@ -80,6 +80,20 @@ class Panel:
         outline, *holes = [0.5 * (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() for x, y in rings]
         return float(outline - sum(holes))
 
+    def in_grain(self, vectors: FloatArray) -> FloatArray:
+        """Turn vectors (k, 2) of the pattern into the axes of warp and weft, as a cover has them.
+
+        Examples
+        --------
+        >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+        >>> panel = Panel(name="A", outline=square, corners=np.arange(4), cut_outline=square,
+        ...               grain=np.array([0.0, 1.0]))
+        >>> panel.in_grain(np.array([[0.5, 2.0]])).tolist()
+        [[2.0, -0.5]]
+        """
+        warp = self.grain / np.hypot(*self.grain)
+        return np.asarray(vectors @ np.column_stack([warp, [-warp[1], warp[0]]]))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Edge:

@@ -28,9 +28,9 @@ _CLEAR = 0.015  # [m] of a border, from where seams meet on it to the end of a c
 def opened(surface: DesignSurface) -> DesignSurface:
     """Cut panels with several borders from one border to the next, at the rear or below.
 
-    A ring that would meet itself in the plane is cut twice and becomes two panels; a panel in
-    several pieces becomes as many. What is cut is said in a warning. A surface that needs nothing
-    stays as it is.
+    A ring that would meet itself in the plane is cut twice and becomes two panels, and so does one
+    of a cover that is closed all round. A panel in several pieces becomes as many. What is cut is
+    said in a warning. A surface that needs nothing stays as it is.
     """
     surface = parted(surface)
     for index, name in enumerate(surface.panel_names):
@@ -71,7 +71,9 @@ def _closing_lines(patch: Patch, borders: list[IntArray], surface: DesignSurface
     around = np.bincount(patch.faces.ravel(), corner.ravel(), minlength=len(patch.vertices))
     joined = next(k for k, loop in enumerate(borders) if first[-1] in loop)
     turns = [float((np.pi - around[borders[k]]).sum()) for k in (0, joined)]
-    if abs(turns[0] - turns[1]) / 2 < _LARGEST_TURN:
+    # Nothing pulls a strip of one piece round the foam where the cover has no border of its own.
+    held = bool(mesh.boundary_loops(surface.faces))
+    if held and abs(turns[0] - turns[1]) / 2 < _LARGEST_TURN:
         return [first]
     far = dijkstra(_roads(patch, np.ones(len(patch.vertices))), False, first, min_only=True)
     return [first, _way(patch, [clear[0], clear[joined]], 1 + _FRONT * (1 - far / far.max()))]
