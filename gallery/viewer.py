@@ -11,6 +11,7 @@ from __future__ import annotations
 import base64
 import importlib
 import json
+import os
 import shutil
 import sys
 import tempfile
@@ -29,6 +30,7 @@ from seatlook import io  # noqa: E402
 from seatlook.chain.case import Case  # noqa: E402
 from seatlook.io.material import read_material  # noqa: E402
 from seatlook.model import Appearance, Rig, bulb, sun  # noqa: E402
+from seatlook.pbr.quality import TIERS  # noqa: E402
 from seatlook.report.viewer.section import viewer_section  # noqa: E402
 from support.browsers import FLAGS  # noqa: E402
 from support.probe import probe_page  # noqa: E402
@@ -71,12 +73,43 @@ def picture(page: Any, look: int, rig: int, size: tuple[int, int]) -> np.ndarray
     return values.reshape(size[1], size[0], 3)[::-1]
 
 
+def cpu_seconds() -> float:
+    """CPU time of all processes that this one has started: those of the browser do the drawing."""
+    table, spent = {}, {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue  # has ended meanwhile
+        pid = int(stat.parent.name)
+        table[pid], spent[pid] = int(fields[1]), int(fields[11]) + int(fields[12])
+    own, found = {os.getpid()}, 0
+    while len(own) > found:
+        found = len(own)
+        own |= {pid for pid, parent in table.items() if parent in own}
+    return sum(spent[pid] for pid in own - {os.getpid()}) / os.sysconf("SC_CLK_TCK")
+
+
 def shadow_agreement(reference: np.ndarray, got: np.ndarray, covered: np.ndarray) -> float:
     """Share of pixels beyond 2 px of a shadow's edge that both find lit, or both dark."""
     lit, same = (x.sum(axis=2) > 0 for x in (reference, got))
     edge = ndimage.binary_dilation(lit, iterations=2) & ndimage.binary_dilation(~lit, iterations=2)
     away = covered & ~edge
     return float((lit == same)[away].mean())
+
+
+def speed(page: Any) -> None:
+    """Print what a frame and a picture at rest take at 1280 x 720, also as CPU time."""
+    page.evaluate("() => window.probed.then((p) => p.resize(1280, 720))")
+    for scale in (1, 2, 3, 4):
+        before = cpu_seconds()
+        ask = "(scale) => window.probed.then((p) => p.frames(10, scale))"
+        taken = page.evaluate(ask, scale) / 10
+        spent = (cpu_seconds() - before) / 10
+        print(f"frame at 1/{scale}: {taken:.0f} ms, {1e3 * spent:.0f} ms of CPU")
+    before = cpu_seconds()
+    taken = page.evaluate("() => window.probed.then((p) => p.still(4))")
+    print(f"rest, 4 samples: {taken:.0f} ms, {1e3 * (cpu_seconds() - before):.0f} ms of CPU")
 
 
 def main() -> None:
@@ -97,17 +130,14 @@ def main() -> None:
         page.set_default_timeout(0)
         said = page.evaluate("() => window.probed.then((p) => [p.opened, p.triangles])")
         print(f"first frame after {said[0]:.0f} ms; {said[1]:.0f} triangles")
-        dragged = page.evaluate("() => window.probed.then((p) => p.drag(12))")
-        frame = float(np.median(dragged["times"][4:]))
-        print(
-            f"{width} x {height}, dragging: {1e3 / frame:.1f} frames/s at "
-            f"{dragged['size'][0]} x {dragged['size'][1]}; "
-            f"rest: {dragged['samples']} samples in {dragged['rest']:.0f} ms"
-        )
+        speed(page)
+        page.evaluate(f"() => window.probed.then((p) => p.resize({width}, {height}))")
         print("light | material | FLIP | block error | shadow state")
         for k, rig in enumerate(scene.rigs):
             for i, (name, look) in enumerate(scene.textures.items()):
-                image = case.render(look, rig=rig, camera=camera, quality="high")
+                # In direct light nothing comes from the seat itself.
+                level = TIERS["T4"] if rig.ambient else replace(TIERS["T4"], bounces=0)
+                image = case.render(look, rig=rig, camera=camera, quality=level)
                 got = picture(page, i, k, camera.size)
                 covered = np.asarray(image.cover)
                 found = compare(image.radiance, got, rig=rig, cover=covered)

@@ -26,6 +26,7 @@ from seatlook.report.comparison_page import write_comparison
 from seatlook.report.evaluation_page import write_report
 from seatlook.report.page.types import Check, ScoreSection
 from seatlook.report.sections.score import visibility
+from seatlook.report.viewer_page import ViewerPage, viewer_page
 from seatlook.results.resolution import Resolution
 
 _NO_SCENES = (".dxf", ".obj", ".stl", ".ply", ".npz")
@@ -127,6 +128,21 @@ class Seat(Case):
             section = visibility(evaluation, progress) if score or limited else None
             page = write_report(evaluation, score=section, single_file=single_file)
         return Outcome(page=page, evaluation=evaluation, score=section)
+
+    def show(self, *, camera: str | Camera | None = None, height: int = 620) -> ViewerPage:
+        """The viewer of the page in a notebook: turn the seat, light it, try looks.
+
+        Parameters
+        ----------
+        height : int [pixels] of the frame
+
+        Raises
+        ------
+        InputError
+            No view of this name.
+        NoOffscreenContext, SolverError
+        """
+        return viewer_page(self, self.camera(camera), height=height)
 
     def draw_assembly(self, path: Path | str) -> Path:
         """Draw the cover as it starts, before anything is solved, into a PNG file.

@@ -20,6 +20,7 @@ from seatlook.chain.case import Case
 from seatlook.report import write_page
 from seatlook.report.page.types import ViewerSection
 from seatlook.report.viewer.section import viewer_section
+from seatlook.report.viewer_page import viewer_page
 from support.browsers import FLAGS
 from support.pages import page_data, write_png
 
@@ -173,6 +174,7 @@ def test_a_place_is_named_by_mouse_and_by_keyboard(page):
     by_key = page.locator("#viewer-here").text_content()
     assert "W2" in by_key
     assert "Nearest seam" in by_key
+    assert "along the grain" in by_key
     area = page.locator("#viewer-canvas").bounding_box()
     page.mouse.click(area["x"] + area["width"] / 2, area["y"] + area["height"] / 2)
     panel = by_key.split(",")[0]
@@ -223,6 +225,21 @@ def test_it_is_sent_as_one_file_that_looks_the_same(page, browser, tmp_path):
     there = pixels(other)
     assert there.shape == shown.shape
     assert np.abs(there - shown).mean() < 0.5
+    assert messages == []
+    context.close()
+
+
+def test_a_notebook_shows_it_in_a_frame(browser, case, tmp_path):
+    shown = viewer_page(case, case.camera("top"))
+    (tmp_path / "cell.html").write_text(f"<!doctype html>{shown._repr_html_()}", encoding="utf-8")
+    context = browser.new_context(offline=True, viewport={"width": 760, "height": 700})
+    page, messages = context.new_page(), []
+    listen(page, messages)
+    page.goto((tmp_path / "cell.html").as_uri())
+    frame = page.frame_locator("iframe")
+    frame.locator("#viewer-open").click()
+    frame.locator(STILL).wait_for(timeout=90_000)
+    assert frame.locator("#viewer-canvas").is_visible()
     assert messages == []
     context.close()
 

@@ -43,24 +43,31 @@ async function start() {
     return text;
   };
 
-  // Milliseconds of each frame while the seat turns, and the size in which it is drawn; then of rest.
-  const drag = (frames) => {
-    const times = [];
-    let size = [0, 0];
-    const still = { ...scene.camera.state };
-    for (let k = 0; k < frames; ++k) {
-      scene.camera.turn(0.02, 0);
-      const before = performance.now();
-      size = renderer.move(shown());
-      times.push(performance.now() - before);
-    }
+  const resize = (width, height) => {
+    [canvas.width, canvas.height] = [width, height];
+  };
+  // Milliseconds of some frames while the seat turns, each at 1 / scale of its size.
+  const frames = (count, scale) => {
+    const state = { ...scene.camera.state }, { width, height } = canvas;
     const before = performance.now();
-    while (renderer.rest(shown()));
-    scene.camera.state = still;
-    return { times, size, rest: performance.now() - before, samples: renderer.done };
+    for (let k = 0; k < count; ++k) {
+      scene.camera.turn(0.02, 0);
+      renderer.sample(shown(), [Math.round(width / scale), Math.round(height / scale)], 0, 1, "coarse");
+      renderer.display(renderer.targets.coarse.texture, 1, shown());
+      renderer.wait();
+    }
+    scene.camera.state = state;
+    return performance.now() - before;
+  };
+  // Milliseconds of a picture at rest.
+  const still = (samples) => {
+    const before = performance.now();
+    renderer.restart();
+    while (renderer.rest(shown(), samples));
+    return performance.now() - before;
   };
   const { faces } = renderer.mesh;
-  return { opened, picture, drag, triangles: faces.length / 3 };
+  return { opened, picture, resize, frames, still, triangles: faces.length / 3 };
 }
 
 window.probed = start();

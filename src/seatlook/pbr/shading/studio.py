@@ -16,7 +16,17 @@ from seatlook.errors import InputError, RenderError
 from seatlook.model import Camera, FloatArray, Light, Rig, Solution, Thread
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.cache import Cache
-from seatlook.pbr.kernels import area_shadow, bvh, coherent, shade, shadow, stage, stitch, surface
+from seatlook.pbr.kernels import (
+    area_shadow,
+    bvh,
+    coherent,
+    rays,
+    shade,
+    shadow,
+    stage,
+    stitch,
+    surface,
+)
 from seatlook.pbr.light.exposure import ev100
 from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_card, white_of
 from seatlook.pbr.light.windows import with_windows
@@ -197,6 +207,18 @@ class Studio:
     def sky_share(self, quality: str = "standard") -> FloatArray:
         """Share (n,) of an even sky that reaches each vertex of the drawn surface."""
         return self._indirect.sky_share(quality_named(quality))
+
+    def seen_from(
+        self, points: FloatArray, normals: FloatArray, directions: FloatArray
+    ) -> npt.NDArray[np.bool_]:
+        """Whether points (k, 3) can be seen past the cover from one of ``directions`` (d, 3).
+
+        A point is not seen from behind, by its normal (k, 3).
+        """
+        far = [Light(name="far", intensity=1.0, vector=d, near=False) for d in directions]
+        out = np.empty((len(directions), len(points)))
+        rays.lit(self._bvh, points, normals, pack_lights(Rig(name="far", lights=tuple(far))), out)
+        return np.asarray(out.any(axis=0))
 
     def shadows(self, rig: Rig, camera: Camera, quality: str) -> npt.NDArray[np.uint8]:
         """Share of each light [1/255] seen by each sample of :meth:`faces`, (lights, h, w).

@@ -54,7 +54,7 @@ def write_page(data: PageData, folder: Path, *, single_file: bool = False) -> Pa
 
 def page_html(data: PageData, *, inside: Path | None = None) -> str:
     """Return the page as text, with the images of the folder ``inside`` in it if there is one."""
-    style = (_TEMPLATES / "page.css").read_text(encoding="utf-8")
+    style = page_style()
     script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
     templates = environment()
     templates.filters["url"] = quote if inside is None else lambda name: _data_uri(inside / name)
@@ -67,10 +67,15 @@ def page_html(data: PageData, *, inside: Path | None = None) -> str:
         policy=content_policy(style, *scripts, images=_images(data, inside)),
         style=Markup(style),
         scripts=[Markup(text) for text in scripts],
-        viewer_content=Markup(_inert(data.viewer.content if data.viewer else "")),
+        viewer_content=Markup(inert(data.viewer.content if data.viewer else "")),
         charts=history_charts(data.history),
         chart_size=(WIDTH, HEIGHT),
     )
+
+
+def page_style() -> str:
+    """Style of the gallery page and of what looks like it."""
+    return (_TEMPLATES / "page.css").read_text(encoding="utf-8")
 
 
 def _images(data: PageData, inside: Path | None) -> str:
@@ -80,7 +85,7 @@ def _images(data: PageData, inside: Path | None) -> str:
     return "'self' data:" if data.viewer else "'self'"
 
 
-def _inert(json: str) -> str:
+def inert(json: str) -> str:
     """JSON that ends no script element, whatever names are in it."""
     return json.replace("<", "\\u003c")
 

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from seatlook.chain.assess import Assessment
 from seatlook.chain.draw import map_ends
 from seatlook.io.export.glb import vertex_means
+from seatlook.mesh import face_normals
 from seatlook.model import FloatArray, IntArray
 from seatlook.pbr.maps.face_map import colour_table
 from seatlook.pbr.shading.studio import Studio
@@ -18,6 +20,8 @@ from seatlook.wrinkle import INDICES
 
 # Most triangles of the cover: as many as software draws five times a second.
 _MOST_FACES = 130_000
+# Directions from which foam is looked at: what none of them sees is not sent.
+_DIRECTIONS = 32
 # Distance [m] from a seam that is sent as the largest number; none is known from there on.
 _SEAM_REACH = 0.014
 _NONE = 65535
@@ -47,8 +51,9 @@ def triangles_of(stage: Studio) -> Triangles:
     while level < finest and len(surface.coarse_faces) * 4 ** (level + 1) <= _MOST_FACES:
         level += 1
     children, refined = 4**level, surface.faces_of_level(level)
-    beside = surface.mesh.faces[surface.faces :]
-    owner = surface.mesh.panel[surface.faces :]
+    seen = _in_sight(stage)
+    beside = surface.mesh.faces[surface.faces :][seen]
+    owner = surface.mesh.panel[surface.faces :][seen]
     coarse, faces, parts, first = [], [], [], 0
     for panel in range(len(stage.solution.cover.panel_names) + 1):
         own = np.flatnonzero(panels == panel)
@@ -71,6 +76,31 @@ def triangles_of(stage: Studio) -> Triangles:
         np.concatenate(coarse),
         children,
     )
+
+
+def _in_sight(stage: Studio) -> npt.NDArray[np.bool_]:
+    """Which faces behind those of the panels are sent: all but the foam that the cover hides."""
+    surface, foam = stage.surface, stage.solution.cover.foam
+    mesh, out = surface.mesh, np.ones(len(surface.mesh.faces) - surface.faces, dtype=bool)
+    if foam is None:
+        return out
+    corners = np.array(foam.faces)
+    x = mesh.vertices[mesh.faces[surface.opaque :]]
+    normals = face_normals(x.reshape(-1, 3), np.arange(3 * len(x)).reshape(-1, 3))
+    seen = stage.seen_from(x.mean(axis=1), normals, _around(_DIRECTIONS))
+    # With those beside it: a face may reach out from below the cover's border.
+    reached = np.zeros(len(foam.vertices), dtype=bool)
+    reached[corners[seen]] = True
+    out[surface.opaque - surface.faces :] = reached[corners].any(axis=1)
+    return out
+
+
+def _around(count: int) -> FloatArray:
+    """Evenly spread unit vectors (count, 3), on a spiral by the golden angle."""
+    k = np.arange(count) + 0.5
+    z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
+    side = np.sqrt(1.0 - z**2)
+    return np.column_stack([side * np.cos(turn), side * np.sin(turn), z])
 
 
 def add_geometry(stage: Studio, buffers: Buffers) -> tuple[Triangles, dict[str, Any]]:
@@ -107,7 +137,10 @@ def add_geometry(stage: Studio, buffers: Buffers) -> tuple[Triangles, dict[str, 
 def add_maps(
     assessment: Assessment, stage: Studio, triangles: Triangles, buffers: Buffers
 ) -> list[dict[str, Any]]:
-    """Add each map face by face, and smooth at the vertices; return what is said of them."""
+    """Add each map face by face, and smooth at the vertices; return what is said of them.
+
+    With the strain of the mid surface [%] along and across the grain, face by face.
+    """
     out = []
     for name in _MAPS:
         index = INDICES[name]
@@ -117,6 +150,8 @@ def add_maps(
         out.append(_map(stage, triangles, values, ends, buffers, said))
     gap = {"name": "Gap", "unit": "mm", "meaning": "from the drawn foam to the cover"}
     out.append(_map(stage, triangles, 1e3 * assessment.gap, (-5.0, 5.0), buffers, gap))
+    strain = stage.solution.strain_mid[triangles.coarse]
+    buffers.add("strain", 100 * np.stack([strain[:, 0, 0], strain[:, 1, 1]], 1).astype(np.float32))
     for colours in ("viridis", "diverging"):
         buffers.add(colours, np.rint(255 * np.sqrt(colour_table(colours))).astype(np.uint8))
     return out

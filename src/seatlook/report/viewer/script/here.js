@@ -13,6 +13,7 @@ export class Knowledge {
   constructor(content, array) {
     this.content = content;
     this.values = content.maps.map((map) => array(`faces ${map.name}`));
+    this.strain = array("strain");
     this.points = content.seams.length ? array("seam points") : new Float32Array();
     this.numbers = content.seams.length ? array("seam numbers") : new Uint16Array();
   }
@@ -32,8 +33,17 @@ export class Knowledge {
       return Number.isFinite(value) ? `${map.name} ${value.toFixed(2)}${unit}` : `${map.name} not known`;
     });
     const seam = this.nearestSeam(hit.place);
-    return `Here: ${part}, pattern u ${u}, v ${v} mm. ${maps.join(", ")}.`
+    const [along, across] = [0, 1].map((k) => `${this.strain[2 * face + k].toFixed(1)} %`);
+    return `Here: ${part}, pattern u ${u}, v ${v} mm. ${maps.join(", ")}.${this.cause(face)}`
+      + ` Strain ${along} along the grain, ${across} across.`
       + (seam ? ` Nearest seam: ${seam.name}, ${(1e3 * seam.away).toFixed(0)} mm away.` : "");
+  }
+
+  /** The larger part of a W2 that counts. @param {number} face */
+  cause(face) {
+    const [w2, stretch, compression] = this.values.map((values) => values[face]);
+    if (!(w2 > 0.1)) return "";
+    return ` Mostly by ${stretch > compression ? "stretch" : "compression"}.`;
   }
 
   /** @param {number[]} place */

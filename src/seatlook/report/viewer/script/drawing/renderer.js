@@ -189,8 +189,11 @@ export class Renderer {
       uCamera: shown.camera.matrix(size[0] / size[1], mesh.reach, mesh.middle, shift),
       uEye: shown.camera.position, ...mesh.ranges,
     };
+    // The wrong side of the cover shows from below or through a gap: it can wait until all is still.
+    if (count === 1 && shown.camera.state.elevation > 0) gl.enable(gl.CULL_FACE);
     if (shown.layer >= 0) this.drawMap(shown, view);
     else this.drawParts(shown, { ...view, ...uniforms }, size, count, white);
+    gl.disable(gl.CULL_FACE);
   }
 
   /** @param {Shown} shown @param {Float32Array} matrices @param {number} index @param {number} count */
