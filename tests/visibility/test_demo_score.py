@@ -45,7 +45,7 @@ def lit(view, looks, highlight):
 
 
 def pair(view, appearance, rig):
-    return tuple(luminance(picture) for picture in view._draw(appearance, rig))
+    return tuple(luminance(picture) for picture in view.draw(appearance, rig))
 
 
 def vwi(view, test, reference, mask=None, *, share=1.0, observer=OBSERVER):

@@ -19,6 +19,7 @@ from seatlook.report.sections.score import (
     zone_table,
 )
 from seatlook.visibility.concentration import CONCENTRATED
+from seatlook.visibility.observer import VISIBLE
 from seatlook.visibility.scoring import score_scene
 from seatlook.visibility.view import View
 from support import scenes
@@ -110,6 +111,13 @@ def test_all_say_the_same(scored):
     assert any(line.startswith("Waves shorter than 12.5 mm are left out") for line in lines)
     assert any(line.startswith("Compare equivalent heights within one texture") for line in lines)
     assert values["cells"][0]["share_in_top_pixels"] < CONCENTRATED
+    assert any("the yardstick of equivalent heights" in line for line in lines)
+    for zone, height in values["visible_from_mm"].items():
+        ladder = scored.ladder.zones[zone]
+        if height is None:
+            assert ladder.vwi.max() < VISIBLE
+        else:
+            assert np.interp(1e-3 * height, ladder.heights, ladder.vwi) == pytest.approx(VISIBLE)
     assert ("Not separable" in " ".join(lines)) == bool(scored.grid.not_separable())
 
 

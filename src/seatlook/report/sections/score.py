@@ -21,6 +21,7 @@ from seatlook.model.table import Table, number
 from seatlook.pbr.maps.pixel_map import render_pixel_map
 from seatlook.report.page.types import Check, MapView, ScoreSection, SeenPlace
 from seatlook.visibility.concentration import CONCENTRATED
+from seatlook.visibility.heights import Ladder
 from seatlook.visibility.light_search import WorstLight
 from seatlook.visibility.observer import FITTING, NULL_LIMIT, OBSERVER, TOO_LONG, VISIBLE
 from seatlook.visibility.pixels import MARGIN
@@ -163,12 +164,30 @@ def zone_table(score: SceneScore) -> Table:
     ]
     ranked.sort(key=lambda row: -max(vwi for vwi, _ in row[1].values()))
     return Table(
-        heads=("zone", "peak to valley [mm]", *grid.textures),
+        heads=("zone", "peak to valley [mm]", "visible from", *grid.textures),
         rows=tuple(
-            (zone, 1e3 * score.ladder.zones[zone].height, *(text for _, text in cells.values()))
+            (
+                zone,
+                1e3 * score.ladder.zones[zone].height,
+                visible_from(score.ladder.zones[zone]),
+                *(text for _, text in cells.values()),
+            )
             for zone, cells in ranked
         ),
     )
+
+
+def visible_from(ladder: Ladder) -> str:
+    """Yardstick of equivalent heights: from which height on the same wrinkles are visible.
+
+    Examples
+    --------
+    >>> visible_from(
+    ...     Ladder(height=0.001, heights=np.array([0, 0.001]), vwi=np.array([0.0, 4.0]))
+    ... )
+    '0.250 mm'
+    """
+    return height_text(ladder.equivalent(VISIBLE), ladder.top)
 
 
 def sentences(score: SceneScore) -> Iterator[str]:
@@ -197,21 +216,35 @@ def sentences(score: SceneScore) -> Iterator[str]:
             f"At most {number(100 * score.peak.share)} % of a score lie in 0.1 % of its pixels "
             f"({', '.join(score.peak.places)}); the limit is {number(100 * CONCENTRATED)} %."
         )
-    fitting, too_long = (f"{number(low)} to {number(high)}" for low, high in (FITTING, TOO_LONG))
-    yield (
-        f"From {number(VISIBLE)} on wrinkles are visible. The middle panel of the demo cushion in "
-        f"black leather scores {fitting} where it fits, {too_long} beside a seam 3 % too long."
-    )
-    if len(grid.textures) > 1:
-        yield (
-            "Compare equivalent heights within one texture: across textures the model gives gloss "
-            "more weight than people do."
-        )
+    yield from yardsticks(score)
     yield (
         f"A cover without wrinkles scores at most {number(score.null)}; the limit is "
         f"{number(NULL_LIMIT)}."
     )
     yield f"The model observer is fitted {OBSERVER.calibrated}, not on wrinkles."
+
+
+def yardsticks(score: SceneScore) -> Iterator[str]:
+    """Say what scores and equivalent heights are to be held against."""
+    fitting, too_long = (f"{number(low)} to {number(high)}" for low, high in (FITTING, TOO_LONG))
+    yield (
+        f"From {number(VISIBLE)} on wrinkles are visible. The middle panel of the demo cushion in "
+        f"black leather scores {fitting} where it fits, {too_long} beside a seam 3 % too long."
+    )
+    ladder = score.ladder
+    if math.isinf(ladder.equivalent(VISIBLE)):
+        seen = f"are not visible up to {number(1e3 * ladder.top)} mm"
+    else:
+        seen = f"are visible from {visible_from(ladder)} on"
+    yield (
+        f"On black leather, in a sun that shows them well, the wrinkles in view {seen}. "
+        "That is the yardstick of equivalent heights; each zone has its own."
+    )
+    if len(score.grid.textures) > 1:
+        yield (
+            "Compare equivalent heights within one texture: across textures the model gives gloss "
+            "more weight than people do."
+        )
 
 
 def draw_maps(
@@ -263,6 +296,10 @@ def score_values(
         "height_mm": 1e3 * score.ladder.height,
         "ladder_mm": (1e3 * score.ladder.heights).tolist(),
         "ladder_vwi": score.ladder.vwi.tolist(),
+        "visible_from_mm": {
+            zone: _millimetres(ladder.equivalent(VISIBLE))
+            for zone, ladder in score.ladder.zones.items()
+        },
         "least_visible": grid.least_visible,
         "worst_rig": {texture: grid.worst_rig(texture) for texture in grid.textures},
         "worst_texture": {rig: grid.worst_texture(rig) for rig in grid.rigs},
