@@ -126,10 +126,12 @@ def main() -> None:
     sync_api = importlib.import_module("playwright.sync_api")
     with sync_api.sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        before = cpu_seconds()
         page = probe_page(browser, "pictures", content, Path(folder))
         page.set_default_timeout(0)
         said = page.evaluate("() => window.probed.then((p) => [p.opened, p.triangles])")
-        print(f"first frame after {said[0]:.0f} ms; {said[1]:.0f} triangles")
+        spent = 1e3 * (cpu_seconds() - before)
+        print(f"first frame: {said[0]:.0f} ms, {spent:.0f} ms of CPU; {said[1]:.0f} triangles")
         speed(page)
         page.evaluate(f"() => window.probed.then((p) => p.resize({width}, {height}))")
         print("light | material | FLIP | block error | shadow state")

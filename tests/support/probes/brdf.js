@@ -1,11 +1,11 @@
 // Values of the viewer's BRDF at given directions, read from a picture of floats.
 
-import { BRDF, MATERIALS } from "./drawing/glsl_brdf.js";
+import { ALL, BRDF, MATERIALS, termsOf } from "./drawing/glsl_brdf.js";
 import { MaterialTable, tablesOf } from "./drawing/materials.js";
 import { WHOLE, bind, fill, floatTable, programOf, targetOf, use } from "./drawing/gl.js";
 import { arraysOf } from "./drawing/payload.js";
 
-const FRAGMENT = `${BRDF}${MATERIALS}
+const FRAGMENT = `${termsOf(ALL)}${BRDF}${MATERIALS}
 uniform sampler2D uSight;
 uniform sampler2D uLight;
 out vec4 oValue;

@@ -1,5 +1,15 @@
 // The BRDF in GLSL: same terms, tables and names as in seatlook/pbr/kernels/brdf.py and lobes.py.
 
+export const ALL = { coat: true, sheen: true, metal: true, stretch: true };
+
+/**
+ * Terms that a shader is to have: software computes those of a branch that is not taken as well.
+ * @param {Record<string, boolean>} terms
+ */
+export function termsOf(terms) {
+  return Object.entries(terms).map(([name, on]) => `#define ${name.toUpperCase()} ${on}\n`).join("");
+}
+
 export const BRDF = `
 const float PI = 3.14159265358979;
 const float ROUGHNESS_LOW = 0.08;
@@ -89,8 +99,8 @@ struct Means { float base; float again; float coat; float coat_again; };
 
 Means meansOf(Material m, float roughness) {
   Means means = Means(meansAt(roughness).x, 0.0, 1.0, 0.0);
-  if (m.anisotropy != 0.0) means.base += stretchedMean(roughness, m.anisotropy);
-  if (m.coat > 0.0) {
+  if (STRETCH && m.anisotropy != 0.0) means.base += stretchedMean(roughness, m.anisotropy);
+  if (COAT && m.coat > 0.0) {
     means.coat = meansAt(m.coat_roughness).x;
     means.coat_again = F_multiple(COAT_F0, 1.0, means.coat);
   }
@@ -111,15 +121,15 @@ Layers layersAt(Material m, float roughness, Means means, float azimuth, float m
   ivec2 size = textureSize(uAlbedos, 0);
   vec2 column = cellOf(root, 0.0, 1.0, size.x);
   vec2 base = albedosAt(cellOf(roughness, ROUGHNESS_LOW, 1.0, size.y), column).rg;
-  if (m.anisotropy != 0.0) base += stretchedAt(roughness, m.anisotropy, azimuth, root);
+  if (STRETCH && m.anisotropy != 0.0) base += stretchedAt(roughness, m.anisotropy, azimuth, root);
   Layers layers = Layers(base.x, base.y, 0.0, 1.0, 1.0, 1.0);
-  if (m.coat > 0.0) {
+  if (COAT && m.coat > 0.0) {
     vec2 coat = albedosAt(cellOf(m.coat_roughness, ROUGHNESS_LOW, 1.0, size.y), column).rg;
     layers.coat_lost = 1.0 - coat.x - coat.y;
     layers.coat -= m.coat * (COAT_F0 * coat.x + coat.y + means.coat_again * layers.coat_lost);
   }
   float share = sheenShare(m);
-  if (share > 0.0) {
+  if (SHEEN && share > 0.0) {
     vec2 row = cellOf(m.sheen_roughness, ROUGHNESS_LOW, 1.0, size.y);
     layers.sheen -= share * albedosAt(row, column).b;
   }
@@ -184,7 +194,7 @@ vec3 brdf(Material m, Sight s, float wider, vec3 l) {
   float LoH = min(1.0, dot(l, h));
   // The sine from the vector product: near the normal a cosine has too few digits.
   float sine2 = dot(h.xy, h.xy);
-  float lobe = m.anisotropy == 0.0
+  float lobe = !STRETCH || m.anisotropy == 0.0
     ? GGX(s.alpha.x, wider, s.v.z, l.z, sine2)
     : stretchedGGX(vec2(widened(s.alpha.x, wider), widened(s.alpha.y, wider)), s.v, l, h);
   Layers here = s.layers, there = layersAt(m, s.roughness, s.means, azimuthOf(m, l.x, l.y), l.z);
@@ -195,17 +205,17 @@ vec3 brdf(Material m, Sight s, float wider, vec3 l) {
   g *= g * g * g * g;
   float grey = (m.f0 + (f90 - m.f0) * g) * lobe + s.means.again * lost;
   grey *= dielectric * min(here.sheen, there.sheen);
-  if (m.coat > 0.0) {
+  if (COAT && m.coat > 0.0) {
     float again = here.coat_lost * there.coat_lost / (PI * (1.0 - s.means.coat));
     float top = GGX(m.coat_roughness * m.coat_roughness, wider, s.v.z, l.z, sine2);
     grey += dielectric * m.coat * ((COAT_F0 + (1.0 - COAT_F0) * g) * top + s.means.coat_again * again);
   }
   vec3 total = vec3(grey) + s.colour * diffuse;
-  if (m.metalness > 0.0) {
+  if (METAL && m.metalness > 0.0) {
     vec3 f = F90(s.colour);
     total += m.metalness * ((s.colour + (f - s.colour) * g) * lobe + F_multiple(s.colour, f, s.means.base) * lost);
   }
-  if (sheenShare(m) > 0.0) {
+  if (SHEEN && sheenShare(m) > 0.0) {
     total += m.sheen * (dielectric * min(here.coat, there.coat) * sheenLobe(m.sheen_roughness, sine2, s.v.z, l.z));
   }
   return total;
@@ -218,11 +228,13 @@ void albedoTowards(Material m, Sight s, out vec3 specular, out vec3 diffuse) {
   float dielectric = 1.0 - m.metalness;
   float lost = 1.0 - here.scale - here.bias;
   float grey = dielectric * here.sheen * (m.f0 * here.scale + F90(m.f0) * here.bias + s.means.again * lost);
-  vec3 f = F90(s.colour);
-  vec3 metal = s.colour * here.scale + f * here.bias + F_multiple(s.colour, f, s.means.base) * lost;
-  specular = vec3(grey) + m.metalness * metal + dielectric * (1.0 - here.coat);
+  specular = vec3(grey + dielectric * (1.0 - here.coat));
+  if (METAL && m.metalness > 0.0) {
+    vec3 f = F90(s.colour);
+    specular += m.metalness * (s.colour * here.scale + f * here.bias + F_multiple(s.colour, f, s.means.base) * lost);
+  }
   diffuse = dielectric * s.colour * here.base;
-  if (sheenShare(m) > 0.0) {
+  if (SHEEN && sheenShare(m) > 0.0) {
     ivec2 size = textureSize(uAlbedos, 0);
     vec2 row = cellOf(m.sheen_roughness, ROUGHNESS_LOW, 1.0, size.y);
     float sheen = albedosAt(row, cellOf(sqrt(s.v.z), 0.0, 1.0, size.x)).b;
@@ -236,7 +248,7 @@ float couplingOf(Material m, float roughness) {
   const int TURNS = 12;
   Means means = meansOf(m, roughness);
   float total = 0.0;
-  int turns = m.anisotropy == 0.0 ? 1 : TURNS;
+  int turns = !STRETCH || m.anisotropy == 0.0 ? 1 : TURNS;
   for (int j = 0; j < N; ++j) {
     float s = (float(j) + 0.5) / float(N);
     for (int t = 0; t < turns; ++t) {

@@ -155,11 +155,11 @@ Detail detailOf(Material m, vec3 n, vec3 plane, vec3 v, vec3 warp, vec3 weft, fl
   float width = reach * uPixel / sqrt(cosine);
   vec3 px = dFdx(vPosition), py = dFdy(vPosition);
   float share = 1.0, own = 0.0;
-  if (uPhotoSize.x > 0.0) {
+  if (PHOTO && uPhotoSize.x > 0.0) {
     float texel = sqrt(uPhotoSize.x / uPhotoSize.z * uPhotoSize.y / uPhotoSize.w);
     d.colour = textureLod(uPhoto, vPattern / uPhotoSize.xy, max(0.0, log2(0.5 * width / texel))).rgb;
   }
-  if (uTexture >= 0) {
+  if (RELIEF && uTexture >= 0) {
     float wide = uTexture == WEAVE ? width * max(1.0, 4.0 * width / uGrain.x) : width;
     // Samples of a relief are finer than those of one lobe: what they leave out averages away.
     float texel = uRelief.x / uRelief.y;
@@ -168,15 +168,15 @@ Detail detailOf(Material m, vec3 n, vec3 plane, vec3 v, vec3 warp, vec3 weft, fl
     float steep = uGrain.y / uGrain.x;
     float variance = max(0.0, t.z - 0.5 * dot(t.xy, t.xy));
     d.n = normalize(d.n - steep * t.x * warp - steep * t.y * weft);
-    share = t.w * (uTexture == SUEDE ? stroke(vPattern) : 1.0);
-    if (uTexture == WEAVE || m.anisotropy != 0.0) {
+    share = t.w * (NAP && uTexture == SUEDE ? stroke(vPattern) : 1.0);
+    if (uTexture == WEAVE || STRETCH && m.anisotropy != 0.0) {
       float alpha = m.roughness * m.roughness;
       d.roughness = min(1.0, sqrt(sqrt(alpha * alpha + 2.0 * steep * steep * variance)));
     } else {
       d.wider = 2.0 * steep * steep * variance;
     }
   }
-  if (uHoles.y > 0.0) d.left = 1.0 - holes(vPattern, width);
+  if (HOLES && uHoles.y > 0.0) d.left = 1.0 - holes(vPattern, width);
   float distance = vSeam.x;
   if (distance < uThread.x + 6.0 * PRESS_WIDTH + uThread.w) {
     vec3 away = gradient(px, py, plane, dFdx(vSeam.x), dFdy(vSeam.x));

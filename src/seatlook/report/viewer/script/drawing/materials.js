@@ -1,6 +1,6 @@
 // Materials, tables, reliefs and an own picture of fabric, on the card.
 
-import { BRDF, COUPLING, MATERIALS } from "./glsl_brdf.js";
+import { ALL, BRDF, COUPLING, MATERIALS, termsOf } from "./glsl_brdf.js";
 import { WHOLE, bind, fill, floatTable, newTexture, programOf, sampling, targetOf, use } from "./gl.js";
 
 /** @typedef {import("./payload.js").Content} Content */
@@ -46,7 +46,7 @@ export class MaterialTable {
   constructor(gl, tables) {
     this.gl = gl;
     this.tables = tables;
-    this.program = programOf(gl, WHOLE, BRDF + MATERIALS + COUPLING);
+    this.program = programOf(gl, WHOLE, termsOf(ALL) + BRDF + MATERIALS + COUPLING);
     /** @type {WebGLTexture | null} */
     this.rows = null;
     /** @type {ReturnType<typeof targetOf> | null} */
@@ -114,6 +114,20 @@ export function photoTexture(gl, picture) {
 }
 
 const RELIEF_CODES = { none: -1, leather: 0, suede: 1, weave: 2 };
+
+/**
+ * What a shader needs for a material, by name.
+ * @param {Material} m
+ * @param {boolean} photo whether a picture is laid over it
+ * @returns {Record<string, boolean>}
+ */
+export function needsOf(m, photo) {
+  return {
+    coat: m.coat > 0, sheen: Math.max(...m.sheen) > 0, metal: m.metalness > 0, stretch: m.anisotropy !== 0,
+    relief: m.texture !== "none" && m.texture_depth > 0, nap: m.texture === "suede",
+    holes: m.perforation_diameter > 0, photo,
+  };
+}
 
 /**
  * Uniforms and textures of the detail of a material.

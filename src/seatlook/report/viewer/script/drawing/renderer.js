@@ -1,9 +1,10 @@
 // Pictures of the seat: one coarse sample while something moves, then several fine ones, summed.
 
 import { ADD, DEPTH, DISPLAY, MOST_LIGHTS, NOTHING, OVERLAY, SHADE, VERTEX } from "./glsl_surface.js";
+import { termsOf } from "./glsl_brdf.js";
 import { WHOLE, bind, fill, newTexture, programOf, sampling, set, targetOf, use } from "./gl.js";
 import { discPoint, isWide, lightsOf } from "./lights.js";
-import { MaterialTable, detailOf, reliefsOf, tablesOf } from "./materials.js";
+import { MaterialTable, detailOf, needsOf, reliefsOf, tablesOf } from "./materials.js";
 import { Mesh } from "./mesh.js";
 
 /** @typedef {import("./payload.js").Content} Content */
@@ -37,9 +38,11 @@ export class Renderer {
     this.table = new MaterialTable(gl, tablesOf(gl, array, content.materials.some((m) => m.anisotropy !== 0)));
     this.reliefs = reliefsOf(gl, content, array);
     this.programs = {
-      shade: programOf(gl, VERTEX, SHADE), overlay: programOf(gl, VERTEX, OVERLAY),
+      overlay: programOf(gl, VERTEX, OVERLAY),
       depth: programOf(gl, DEPTH, NOTHING), display: programOf(gl, WHOLE, DISPLAY), add: programOf(gl, WHOLE, ADD),
     };
+    /** @type {Map<string, import("./gl.js").Program>} */
+    this.shaders = new Map();
     this.colours = ["viridis", "diverging"].map((name) => this.colourTable(array(name)));
     this.blank = this.colourTable(Uint8Array.of(255, 255, 255));
     this.shadows = this.shadowMaps();
@@ -231,18 +234,21 @@ export class Renderer {
    */
   drawParts(shown, view, size, count, white) {
     const { gl, mesh, content } = this;
-    const { shade } = this.programs;
     const { thread } = content;
     const pixel = 2 * shown.camera.half(size[0] / size[1]) / size[1];
-    use(gl, shade, {
+    const common = {
       ...view, uWhite: white, uSpread: 1 / Math.sqrt(count), uPixel: pixel / Math.sqrt(count),
       uSky: shown.rig.sky, uThread: [thread.offset, thread.pitch, thread.length, thread.width],
       uThreadColour: [...thread.colour, thread.own],
-    });
+    };
+    const prepared = new Set();
     content.parts.forEach((part, k) => {
       const row = shown.look[k], last = k === content.parts.length - 1;
       const detail = detailOf(shown.materials[row], content, this.reliefs);
       const photo = last ? null : shown.photo;
+      const shade = this.shader(needsOf(shown.materials[row], photo !== null));
+      use(gl, shade, prepared.has(shade) ? {} : common);
+      prepared.add(shade);
       set(gl, shade, {
         ...detail.uniforms, uRow: row, uPhotoSize: photo ? [...photo.size, ...photo.pixels] : [0, 0, 0, 0],
       });
@@ -252,6 +258,17 @@ export class Renderer {
       });
       mesh.draw(part.first, part.count);
     });
+  }
+
+  /**
+   * The shader with these terms and no more.
+   * @param {Record<string, boolean>} needs
+   */
+  shader(needs) {
+    const key = termsOf(needs);
+    const found = this.shaders.get(key) ?? programOf(this.gl, VERTEX, key + SHADE);
+    this.shaders.set(key, found);
+    return found;
   }
 
   /** @param {Shown} shown @param {Record<string, import("./gl.js").Value>} view */
