@@ -50,6 +50,9 @@ def test_sizes_follow_from_tolerance_and_wavelength():
     wave = foam_wavelength(scene.materials["LEFT"].fabric, scene.foam.material)
     assert CURVATURE_ERROR * (finest_size(scene) / wave) ** 2 == pytest.approx(0.05)
     assert coarsest_size(scene) >= 0.007
+    # However loose, another mesh must be twice as coarse to tell the error.
+    stiff = asked(0.5, bending=5e-2)
+    assert finest_size(stiff) == pytest.approx(0.5 * coarsest_size(stiff))
 
 
 def test_a_ladder_of_meshes_halves_the_elements_until_the_first():

@@ -32,8 +32,8 @@ from seatlook.solver import SolverSettings, foam_wavelength, solve
 
 BEFORE = "0-coarser.npz"  # beside the stages: what the mesh was made from
 _TWICE = 2.0  # as large are the elements of the mesh before
-_COARSEST = 0.010  # m; the shape of a seat needs no finer
-_APART = 1.4  # times as large elements, from which a difference of two meshes is one of sizes
+_COARSEST = 0.014  # m; the shape of a seat needs no finer
+_APART = 1.3  # times as large elements, from which a difference of two meshes is one of sizes
 _ORDER = 1.5  # at which means converge: 2 where there are waves, 1 at the kink of a hooked seam
 _BEFORE = 0.35  # of the work is done on the meshes before, as an estimate
 _SECONDS = 1e-3  # CPU seconds for a vertex: docs/charts/tolerance.csv
@@ -41,9 +41,11 @@ _ADDED = ("steps", "iterations", "cpu_seconds")
 
 
 def finest_size(scene: Scene) -> float:
-    """Element size [m] where a cover wrinkles that is to keep the scene's tolerance."""
-    wave = min(foam_wavelength(m.fabric, scene.foam.material) for m in scene.materials.values())
-    return wave * math.sqrt(_asked(scene) / CURVATURE_ERROR)
+    """Element size [m] where a cover wrinkles that is to keep the scene's tolerance.
+
+    Never so large that no coarser mesh could tell its error.
+    """
+    return _wavelength(scene) * math.sqrt(_sizing(scene) / CURVATURE_ERROR)
 
 
 def coarsest_size(scene: Scene) -> float:
@@ -182,7 +184,7 @@ def local_cover(scene: Scene, before: Solution) -> Cover:
     # Free edges are left out of every statement.
     inner = ~np.isin(cover.zone, [k for k, z in enumerate(cover.zone_names) if z == FREE_EDGE])
     w2 = np.where(inner, _w2(scene, before), 0.0)
-    sizes = needed_sizes(cover, w2, _asked(scene), coarsest_size(scene))
+    sizes = needed_sizes(cover, w2, _sizing(scene), coarsest_size(scene))
     gradings = {}
     for panel, name in enumerate(cover.panel_names):
         own = np.unique(cover.faces[cover.panel == panel])
@@ -315,6 +317,16 @@ def _criteria(scene: Scene, solution: Solution) -> Criteria:
 
 def _w2(scene: Scene, solution: Solution) -> FloatArray:
     return assess(solution, _criteria(scene, solution)).values("w2")
+
+
+def _wavelength(scene: Scene) -> float:
+    return min(foam_wavelength(m.fabric, scene.foam.material) for m in scene.materials.values())
+
+
+def _sizing(scene: Scene) -> float:
+    """Tolerance that sizes a mesh: the scene's, or that of half the coarsest elements."""
+    coarse = CURVATURE_ERROR * (_COARSEST / _TWICE / _wavelength(scene)) ** 2
+    return min(_asked(scene), coarse)
 
 
 def _asked(scene: Scene) -> float:
