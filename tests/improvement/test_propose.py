@@ -56,6 +56,14 @@ def test_a_result_that_is_not_converged_is_refused(asked):
         propose(scene, assess(bad))
 
 
+@pytest.mark.validate
+def test_a_hook_that_is_missing_is_named_first(scene):
+    bare = replace(scene, hooks=tuple(h for h in scene.hooks if h.wire != "trench_left"))
+    found = propose(bare, assess(solve(assemble(bare))))
+    assert found.proposals[0].move.names == ("trench_left", "INSERT-BOLSTER_L")
+    assert "holds nothing" in found.proposals[0].sentence
+
+
 def test_frozen_seams_freeze_both_edges(scene, changes):
     from seatlook.improvement.propose import _frozen
 

@@ -26,6 +26,7 @@ _STEPS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0)  # of the largest amount
 _LINEAR = 0.015  # m of movement, beyond which straight answers mislead
 _LEAST_GAIN = 0.03  # of the objective
 _SMALLEST = 3e-4  # m that nobody cuts
+_MEANT = 0.5  # of the foam's slope, from which a wire that holds nothing goes before it
 _CHECKS = 3  # warm solves of one move
 _CLOSE = 0.8  # of the amount: a better one that is closer is not looked at
 
@@ -201,18 +202,18 @@ class _Ways:
         """Up to ``count`` moves one after the other, each checked by a warm solve.
 
         Where a check finds less than was expected, as straight answers do beyond the taut cover,
-        the amount is that of the parabola through slope and check.
+        the amount is that of the parabola through slope and check. A wire that holds nothing ends
+        the list: it cannot be checked, and what else to do shows when it is hooked.
         """
         start = value = self._objective.parts(self._sheet, self._x).total
         x, left, proposals = self._x, list(moves), list[Proposal]()
         while left and len(proposals) < count:
-            tried = [(self._along(move, x), move) for move in left]
-            (gain, amount), move = max(tried, key=lambda one: one[0])
+            gain, amount, move = self._choose(left, x)
             if gain < _LEAST_GAIN * start or abs(amount) < _SMALLEST:
                 break
             left = [other for other in left if not _same(other, move)]
-            if move.kind == "wire":  # a warm solve has no ties for it
-                x, value = x + amount * self._answer(move), value - gain
+            if move.kind == "wire":
+                gain, left = min(gain, value), []
             else:
                 amount, gain, x = self._checked(move, amount, value, proposals)
                 if gain < _LEAST_GAIN * start:
@@ -226,6 +227,20 @@ class _Ways:
                 )
             )  # fmt: skip
         return proposals
+
+    def _choose(self, moves: Sequence[Move], x: FloatArray) -> tuple[float, float, Move]:
+        """Gain, amount and move of what helps most from ``x``.
+
+        A wire that is there and holds nothing is meant to be used: it goes before foam that gains
+        about as much for each mm, however much foam could be added.
+        """
+        tried = [(*self._along(move, x), move) for move in moves]
+        best = max(tried, key=lambda one: one[0])
+        if best[2].kind != "foam":
+            return best
+        least = _MEANT * abs(self.slope(best[2]))
+        wires = [t for t in tried if t[2].kind == "wire" and abs(self.slope(t[2])) > least]
+        return max([t for t in wires if t[0] > 0.0], key=lambda one: one[0], default=best)
 
     def _checked(
         self, move: Move, amount: float, value: float, before: Sequence[Proposal]
@@ -317,4 +332,5 @@ def sentence(move: Move, amount: float, share: float) -> str:
         text = f"wire {move.names[0]} holds nothing: hook seam {move.names[1]} to it"
     else:
         text = f"foam below {names}: " + (f"build it up by {size}" if up else f"take {size} off it")
-    return f"{text}; {100 * share:.0f} % of what is wrong goes with it"
+    most = "up to " if move.kind == "wire" else ""
+    return f"{text}; {most}{100 * share:.0f} % of what is wrong goes with it"
