@@ -58,3 +58,17 @@ def test_radiance_is_kept_beside_the_picture(scene, solution, tmp_path, suffix):
     # Below the bulb: candela over distance squared, over pi, of a grey of one half.
     expected = 0.5 * 800 / (4 * np.pi) / 0.06**2 / np.pi
     assert radiance[12, 16, 1] == pytest.approx(expected * RIG.lights[0].colour[1], rel=0.1)
+
+
+@pytest.mark.parametrize("name", ["plain", "sweep"])
+def test_a_picture_says_what_the_scene_has_around_the_seat(scene, solution, tmp_path, name):
+    around = replace(scene, surroundings=name)
+    shown = draw(around, solution, tmp_path, quality="T1")
+    with Image.open(tmp_path / "images/near/grey.png") as file:
+        assert file.text.get("seatlook surroundings", "plain") == name
+    assert shown.shape == (24, 32, 3)
+
+
+def test_a_scene_knows_its_surroundings(scene):
+    with pytest.raises(InputError, match="surroundings: got 'studio', expected one of plain"):
+        replace(scene, surroundings="studio")

@@ -9,7 +9,7 @@ from seatlook.errors import RenderError
 from seatlook.model import Camera, named_view
 from seatlook.pbr.kernels import bvh
 from seatlook.pbr.kernels.surface import ray_through
-from seatlook.pbr.shading.studio import eye_of
+from seatlook.pbr.shading.eye import eye_of
 from support.reference.lit_sheets import above, sheet
 
 pytestmark = pytest.mark.render

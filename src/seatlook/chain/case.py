@@ -237,6 +237,7 @@ class Case:
         rig: str | Rig | None = None,
         camera: str | Camera | None = None,
         quality: str = "standard",
+        surroundings: str | None = None,
     ) -> Image:
         """Render the seat.
 
@@ -246,6 +247,7 @@ class Case:
             for the panels' own materials
         rig : name of a rig of the scene, or an object; None for the first
         camera : name of a view of the scene or of ``VIEWS``, or an object; None for the first
+        surroundings : what is around the seat, see ``seatlook.render``; None for the scene's
 
         Raises
         ------
@@ -257,6 +259,7 @@ class Case:
             rig=self.rig(rig),
             camera=self.camera(camera),
             quality=quality,
+            surroundings=self.scene.surroundings if surroundings is None else surroundings,
         )
 
     def score(

@@ -106,6 +106,7 @@ def draw_pictures(
                 rig=rig,
                 camera=canvas.camera,
                 quality=chosen.quality,
+                surroundings=scene.surroundings,
             )
             shown = replace(
                 image,

@@ -31,6 +31,7 @@ def render(
     adaptation: float = 1.0,
     radiance: Literal["npy", "exr"] | None = None,
     panorama_azimuth_deg: float | None = None,
+    surroundings: Literal["plain", "sweep", "cabin", "transparent"] | None = None,
 ) -> None:
     """Draw a result under the lights of a scene; nothing is solved.
 
@@ -60,6 +61,10 @@ def render(
         Save what is seen, in cd/m2, beside each picture; exr needs the extra "exr".
     panorama_azimuth_deg
         Turn the sky pictures of the rigs by so much more, counter-clockwise seen from above.
+    surroundings
+        What is around the seat: nothing (plain), a bright floor with a valance over the hem
+        (sweep), a dark one (cabin), or light from a floor that is not seen (transparent). Those of
+        the scene if not given.
     """
     from seatlook.chain.draw import Canvas, Exposures, draw_maps, draw_pictures
     from seatlook.chain.files import picture_paths
@@ -71,6 +76,8 @@ def render(
     part, solution = seat.narrowed(texture, rig), seat.solution
     if panorama_azimuth_deg is not None:
         part = replace(part, rigs=_turned(part.rigs, panorama_azimuth_deg))
+    if surroundings is not None:
+        part = replace(part, surroundings=surroundings)
     canvas = Canvas(
         solution=solution, camera=seat.camera(view), out=out, run=solution.cover.scene_digest
     )

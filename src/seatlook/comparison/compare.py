@@ -90,6 +90,7 @@ class Comparison:
                 self.first.scene.textures[texture],
                 rig=lit,
                 camera=self.camera,
+                surroundings=self.first.scene.surroundings,
             )
             self._drawn[names] = Cell(name=", ".join(names), png=image.to_png(), ev100=image.ev100)
         return self._drawn[names]

@@ -27,6 +27,7 @@ from seatlook.model.light.lamps import (
     tunnel,
     two_sided_rectangle,
 )
+from seatlook.model.light.surroundings import SURROUNDINGS, Surroundings, surroundings_named
 from seatlook.model.material import (
     Appearance,
     Curve,
@@ -45,6 +46,7 @@ from seatlook.model.texture import TextureMaps
 
 __all__ = [
     "LIGHTS",
+    "SURROUNDINGS",
     "VIEWS",
     "Anchor",
     "Appearance",
@@ -85,6 +87,7 @@ __all__ = [
     "Stitching",
     "StrainMeasure",
     "Strains",
+    "Surroundings",
     "TextureMaps",
     "Thread",
     "Verdict",
@@ -102,6 +105,7 @@ __all__ = [
     "stage_units",
     "strip",
     "sun",
+    "surroundings_named",
     "tunnel",
     "two_sided_rectangle",
 ]

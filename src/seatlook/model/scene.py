@@ -16,6 +16,7 @@ from seatlook.model.criteria import CurvatureMode
 from seatlook.model.fastenings import Thread
 from seatlook.model.light.camera import Camera
 from seatlook.model.light.lamps import Rig
+from seatlook.model.light.surroundings import surroundings_named
 from seatlook.model.material import Appearance, Foam, Material
 from seatlook.model.pattern import Pattern
 from seatlook.model.stage import Stage
@@ -255,6 +256,7 @@ class Scene:
     hem : whether seam allowances are folded inward; if not, seams are free hinges
     allowed : contradictions out of ``ALLOWED`` that a check lets pass
     element_sizes : panel name -> float [m]     of panels that are meshed finer or coarser
+    surroundings : name of what is around the seat in pictures, of ``SURROUNDINGS``; never in scores
     tolerance : float [1]       of zone means of W2, from which the mesh follows; None: it is
         ``element_size``, which is that of the first mesh only where there is a tolerance
     element_size : float [m]; smallest_notch : float [m], below which reading closed cuts
@@ -277,6 +279,7 @@ class Scene:
     textures: MappingProxyType[str, Appearance | None] = field(
         default_factory=lambda: MappingProxyType({"as built": None})
     )
+    surroundings: str = "plain"
     boxes: tuple[ZoneBox, ...] = ()
     limits: tuple[Limit, ...] = ()
     improve: Freedom = field(default_factory=Freedom)
@@ -296,6 +299,7 @@ class Scene:
 
     def __post_init__(self) -> None:
         positive(self, "element_size", "c_threshold")
+        surroundings_named(self.surroundings)
 
     def __repr__(self) -> str:
         return (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
@@ -23,6 +24,7 @@ from seatlook.pbr.light.exposure import Radiance, exposure_of, to_display
 from seatlook.pbr.light.rig import LUMINANCE
 
 RUN_KEY = "seatlook run"  # of the text in a PNG that names the run
+SURROUNDINGS_KEY = "seatlook surroundings"  # of the one that names what is around the seat
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +42,8 @@ class Image:
     review : whether that card is shown as white, 255: a facing colour shows what was typed
     adaptation : how far the eye has adapted to the colour of the light, 0 to 1 (von Kries)
     cover : (h, w) float32 in [0, 1]       share of the pixel that shows the cover
+    alpha : (h, w) float32 in [0, 1]       share of the pixel that is not transparent; None: all
+    surroundings : name of what is around the seat; the file says it unless it is ``plain``
     """
 
     radiance: Radiance
@@ -52,6 +56,8 @@ class Image:
     adaptation: float = 1.0
     camera: Camera | None = None
     cover: npt.NDArray[np.float32] | None = None
+    alpha: npt.NDArray[np.float32] | None = None
+    surroundings: str = "plain"
 
     def to_srgb(self) -> npt.NDArray[np.uint8]:
         """Eight-bit sRGB (h, w, 3) at this exposure.
@@ -69,11 +75,24 @@ class Image:
             luminance = float(self.card @ LUMINANCE)
             ev, white = exposure_of(luminance), self.card / luminance
         white = self.adaptation * white + (1.0 - self.adaptation)
-        return to_display(self.radiance, ev, white=white, tone=self.tone)
+        radiance: Radiance = self.radiance
+        if self.alpha is not None:
+            # A pixel at an outline has its own colour, and shows less of it.
+            share = np.maximum(self.alpha, np.float32(1e-6))
+            radiance = (self.radiance / share[..., None]).astype(np.float32)
+        return to_display(radiance, ev, white=white, tone=self.tone)
 
     def to_png(self, run: str = "") -> bytes:
-        """PNG file content; ``run`` names the run that it belongs to, in a text of the file."""
-        return png(self.to_srgb(), run)
+        """PNG file content; ``run`` names the run that it belongs to, in a text of the file.
+
+        Of a picture with transparent parts it has a fourth channel.
+        """
+        pixels = self.to_srgb()
+        if self.alpha is not None:
+            share = np.rint(255.0 * self.alpha).astype(np.uint8)
+            pixels = np.dstack([pixels, share])
+        around = {} if self.surroundings == "plain" else {SURROUNDINGS_KEY: self.surroundings}
+        return png(pixels, run, around)
 
     def save(self, path: Path, *, run: str = "") -> None:
         """Write ``.png`` (display), ``.npy`` or, with the extra ``[exr]``, ``.exr`` (radiance).
@@ -126,16 +145,21 @@ class Picture:
         return self.to_png()
 
 
-def png(pixels: npt.NDArray[np.uint8], run: str = "") -> bytes:
-    """PNG content of (h, w, 3) uint8 sRGB pixels, the same bytes for the same pixels and run.
+def png(
+    pixels: npt.NDArray[np.uint8], run: str = "", texts: Mapping[str, str] | None = None
+) -> bytes:
+    """PNG content of (h, w, 3 or 4) uint8 sRGB pixels, the same bytes for the same arguments.
 
-    The file says that it is sRGB, perceptual: without that a wide display shows other colours.
+    ``texts``: what else the file says of itself. It says that it is sRGB, perceptual: without that,
+    a wide display shows other colours.
     """
     buffer = io.BytesIO()
     about = PngInfo()
     about.add(b"sRGB", b"\0")
     if run:
         about.add_text(RUN_KEY, run)
+    for key, text in (texts or {}).items():
+        about.add_text(key, text)
     Pillow.fromarray(pixels).save(buffer, format="PNG", compress_level=6, pnginfo=about)
     return buffer.getvalue()
 

@@ -25,6 +25,11 @@ from support.scene_files import TEXT, write_two_panels
         ),
         ("ev100 = 5.0", "ev100 = 1e6", "rig[1].ev100: got 1000000.0"),
         ('textures = ["pvc", "suede"]', 'textures = ["pvc", "pvc"]', "gallery.textures: got 'pvc'"),
+        (
+            'textures = ["pvc", "suede"]',
+            'surroundings = "sweeps"',
+            "gallery.surroundings: got 'sweeps'",
+        ),
         ("element_size_mm = 20.0", "element_size_mm = 1e-9", "mesh.element_size_mm: got 1e-09"),
         (
             "[camera]",

@@ -10,8 +10,9 @@ import pytest
 from seatlook.model import Camera, Thread
 from seatlook.pbr.kernels import stitch
 from seatlook.pbr.kernels.coherent import find_coherent
+from seatlook.pbr.shading.eye import eye_of
 from seatlook.pbr.shading.seam import pack_thread
-from seatlook.pbr.shading.studio import Studio, eye_of
+from seatlook.pbr.shading.studio import Studio
 from support.reference.lit_sheets import sheet
 
 pytestmark = pytest.mark.render

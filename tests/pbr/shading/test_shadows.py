@@ -11,7 +11,8 @@ from seatlook.model import Camera, Rig, bulb, sun
 from seatlook.pbr.kernels import shadow
 from seatlook.pbr.light.rig import pack_lights
 from seatlook.pbr.quality import quality_named
-from seatlook.pbr.shading.studio import Studio, eye_of
+from seatlook.pbr.shading.eye import eye_of
+from seatlook.pbr.shading.studio import Studio
 from support.reference.lit_sheets import sheet
 
 pytestmark = pytest.mark.render

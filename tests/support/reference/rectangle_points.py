@@ -15,8 +15,9 @@ from seatlook.pbr.kernels.stage import Hit, Stage, frame, place_at, towards_eye
 from seatlook.pbr.kernels.surface import along, cross, dot, meet, ray_through, row, row_of
 from seatlook.pbr.kernels.tables import coupling_at
 from seatlook.pbr.light.rig import pack_lights
+from seatlook.pbr.shading.eye import eye_of
 from seatlook.pbr.shading.look import look_of
-from seatlook.pbr.shading.studio import Studio, eye_of
+from seatlook.pbr.shading.studio import Studio
 
 
 def direct(

@@ -24,6 +24,7 @@ from seatlook.io.schema import (
     Texts,
 )
 from seatlook.io.surface.axes import UNITS, UPS
+from seatlook.model.light.surroundings import SURROUNDINGS
 from seatlook.model.scene import ALLOWED, ELEMENT_SIZES, LARGEST_SEED, SCORE_MEASURES, TOLERANCES
 from seatlook.model.stage import LONGEST, RAMPS, SHORTEST
 from seatlook.wrinkle import INDICES
@@ -145,7 +146,12 @@ KEYS: dict[str, Kind] = {
     ),
     "rig": Rows(Table(RIG), required=True),
     "camera": Table(CAMERA),
-    "gallery": Table({"textures": Texts(or_one=True, default=(AS_BUILT,))}),
+    "gallery": Table(
+        {
+            "textures": Texts(or_one=True, default=(AS_BUILT,)),
+            "surroundings": Text(choices=tuple(SURROUNDINGS), default="plain"),
+        }
+    ),
     "thread": Table(
         {
             "colour": Colour(),

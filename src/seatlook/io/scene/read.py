@@ -131,6 +131,7 @@ class _Reader:
             path=document.file,
             digest=self.files.digest(),
             hem=row["hem"],
+            surroundings=row["gallery"]["surroundings"],
             allowed=row["check"]["allow"],
             element_size=row["mesh"]["element_size_mm"] or FIRST_SIZE,
             tolerance=row["mesh"]["tolerance_percent"],

@@ -159,14 +159,18 @@ def distances(mesh, eye, ids, out):
 
 
 @njit(cache=True)
-def covered(ids, faces, factor, out):
-    """Share of each pixel of ``out`` (h, w) that shows one of the first ``faces`` faces."""
+def covered(ids, faces, around, factor, out):
+    """Share of each pixel of ``out`` (h, w) that shows the cover.
+
+    That is one of the first ``faces`` faces, but those from ``around[0]`` on and before
+    ``around[1]``.
+    """
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
             count = 0
             for q in range(factor * factor):
                 f = ids[y * factor + q // factor, x * factor + q % factor]
-                count += 0 <= f < faces
+                count += 0 <= f < faces and not around[0] <= f < around[1]
             out[y, x] = count / (factor * factor)
 
 

@@ -14,7 +14,8 @@ from seatlook.model.colour import srgb_decode, srgb_encode
 from seatlook.pbr.kernels import colour
 from seatlook.pbr.kernels import surface as kernel
 from seatlook.pbr.picture import Picture
-from seatlook.pbr.shading.studio import Studio, eye_of, studio
+from seatlook.pbr.shading.eye import eye_of
+from seatlook.pbr.shading.studio import Studio, studio
 
 FACTOR = 2  # samples per pixel and axis
 # The surround of pictures as well, so that map and picture lie over each other without a glare.

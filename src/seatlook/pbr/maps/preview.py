@@ -9,8 +9,8 @@ from seatlook.errors import RenderError
 from seatlook.model import Camera, FloatArray, Solution
 from seatlook.model.colour import srgb_encode
 from seatlook.pbr.kernels import surface as kernel
+from seatlook.pbr.shading.eye import eye_of
 from seatlook.pbr.shading.foam import FOAM, with_foam
-from seatlook.pbr.shading.studio import eye_of
 from seatlook.pbr.shading.surface import vertex_normals
 
 _FACTOR = 2  # samples per pixel and axis

@@ -12,6 +12,8 @@ from seatlook.pbr.kernels.surface import Mesh
 
 # Open-cell polyether, cream; judgement.
 FOAM = Appearance(albedo=np.array([0.62, 0.57, 0.42]), roughness=0.95, f0=0.02)
+# Where a seat stands on something, what is left to be seen of the foam lies in the dark of a gap.
+HIDDEN_FOAM = Appearance(albedo=np.full(3, 0.01), roughness=0.95, f0=0.0)
 
 # The foam lies this far [m] below the cover, wherever the cover is this near.
 _BELOW, _NEAR = 0.003, 0.03

@@ -41,7 +41,12 @@ class IndirectLight:
     def __init__(self, surface: Surface, tree: bvh.Bvh, cache: Cache) -> None:
         self.surface, self.tree, self.cache = surface, tree, cache
         self.lookout = Lookout(surface)
-        self.few = self.lookout.few
+        self.first = self.lookout.first
+
+    @property
+    def _on_cover(self) -> IntArray:
+        """Vertices that look first, but those around the seat."""
+        return self.first[self.first < self.surface.vertices]
 
     @functools.cached_property
     def _points(self) -> FloatArray:
@@ -49,7 +54,7 @@ class IndirectLight:
         mesh, m = self.surface.mesh, self.surface.faces
         edge = boundary_edges(mesh.faces[:m])
         corner = np.isin(mesh.faces[:m], np.unique(edge))
-        face = np.full(self.surface.vertices, -1)
+        face = np.full(self.surface.gathering, -1)
         face[mesh.faces[:m][corner]] = np.nonzero(corner)[0]
         out = np.empty((len(face), 3))
         rays.inset(mesh, face, out)
@@ -59,7 +64,7 @@ class IndirectLight:
         self, rig: Rig, look: Look, level: Quality, camera: Camera, ids: np.ndarray
     ) -> light.Indirect:
         """Indirect light under a rig; see ``light.Indirect``."""
-        mesh, k = self.surface.mesh, self.surface.vertices
+        mesh, k = self.surface.mesh, self.surface.gathering
         n = len(mesh.vertices)
         look = look._replace(materials=from_afar(look))
         even, panorama = rig.ambient * sky_colour(rig), sky_levels(rig)
@@ -72,7 +77,7 @@ class IndirectLight:
             rays.sky_seen(mesh.normals, seen.which, seen.hits, strata, panorama, whole, sky)
         diffuse[:k] = self.lookout.spread(seen.which, self._shared(seen, sky, _TIMES))
         # Of the sky below a seam, and where the foam is in sight, little is seen.
-        diffuse[k:] = _HIDDEN_SKY * diffuse[: self.few].mean(axis=0)
+        diffuse[k:] = _HIDDEN_SKY * diffuse[self._on_cover].mean(axis=0)
         if level.bounces:
             lights = pack_lights(patched(rig))
             sources = Sources(mesh, look, lights, self._lit(lights), diffuse)
@@ -85,11 +90,11 @@ class IndirectLight:
 
     def sky_share(self, level: Quality) -> FloatArray:
         """Share (n,) of an even sky that reaches each vertex of the drawn surface."""
-        out, k = np.empty(len(self.surface.mesh.vertices)), self.surface.vertices
+        out, k = np.empty(len(self.surface.mesh.vertices)), self.surface.gathering
         seen = self._half_space(level)
         share = (seen.hits == rays.OPEN).mean(axis=1)[:, None]
         out[:k] = self.lookout.spread(seen.which, self._shared(seen, share, _TIMES))[:, 0]
-        out[k:] = _HIDDEN_SKY * out[: self.few].mean()
+        out[k:] = _HIDDEN_SKY * out[self._on_cover].mean()
         return out
 
     def _first_bounce(self, sources: Sources, seen: Vertices, level: Quality) -> FloatArray:
@@ -129,10 +134,11 @@ class IndirectLight:
 
         def make() -> FloatArray:
             mesh = self.surface.mesh
-            few = np.empty((len(lights.near), self.few))
-            rays.lit(self.tree, self._points, mesh.normals, lights, few)
+            few = np.empty((len(lights.near), len(self.first)))
+            normals = mesh.normals[self.first]
+            rays.lit(self.tree, self._points[self.first], normals, lights, few)
             lit = np.zeros((len(few), len(mesh.vertices)))
-            lit[:, : self.surface.vertices] = self.surface.refined.spread(few.T).T
+            lit[:, : self.surface.gathering] = self.lookout.spread(self.first, few.T).T
             return lit
 
         return np.asarray(self.cache(("lit", *_places(lights)), make))
@@ -161,7 +167,7 @@ class IndirectLight:
         mirrored: FloatArray,
     ) -> None:
         """What reflections towards the camera see, into ``open_`` (n,) and ``mirrored`` (n, 3)."""
-        k = self.surface.vertices
+        k = self.surface.gathering
         reflection = Reflection(np.array(camera.position), self._points, 3 * level.strata // 4)
         seen = self._lobes(reflection, camera, ids, level, sources)
         share, sent = np.empty(len(seen.which)), np.empty((len(seen.which), 3))
@@ -185,12 +191,12 @@ class IndirectLight:
 
     def _half_space(self, level: Quality) -> Vertices:
         if not level.strata:
-            return Vertices(np.arange(self.few), np.full((self.few, 64), rays.OPEN, dtype=np.int32))
+            return Vertices(self.first, np.full((len(self.first), 64), rays.OPEN, dtype=np.int32))
         strata, mesh = level.strata, self.surface.mesh
 
         def look(which: IntArray) -> npt.NDArray[np.int32]:
             hits = np.empty((len(which), strata * strata), dtype=np.int32)
-            start = (self.tree, self.surface.faces, self._points, mesh.normals)
+            start = (self.tree, self.surface.fronts, self._points, mesh.normals)
             in_parts(
                 len(which),
                 lambda a, b: rays.gather(*start, which[a:b], strata, hits[a:b]),
@@ -198,7 +204,7 @@ class IndirectLight:
             )
             return hits
 
-        wanted = np.ones(self.surface.vertices, dtype=bool)
+        wanted = np.ones(self.surface.gathering, dtype=bool)
         seen: Vertices = self.cache(
             ("hits", strata), lambda: self.lookout.where_it_changes(look, _open, wanted)
         )
@@ -213,7 +219,7 @@ class IndirectLight:
         sources: Sources,
     ) -> Vertices:
         """What vertices in the picture see along reflections, by more where lit shares differ."""
-        m, mesh, lights = self.surface.faces, self.surface.mesh, sources.lights
+        m, mesh, lights = self.surface.fronts, self.surface.mesh, sources.lights
 
         def look(which: IntArray) -> npt.NDArray[np.int32]:
             hits = np.empty((len(which), 2 * reflection.strata**2), dtype=np.int32)
@@ -232,7 +238,7 @@ class IndirectLight:
             return np.column_stack([_open(hits), light.T])
 
         key = ("lobes", camera_key(camera), level.factor, level.strata)
-        memory = self.cache(key, lambda: Memory(self.surface.vertices))
+        memory = self.cache(key, lambda: Memory(self.surface.gathering))
         seen: Vertices = self.cache(
             (*key, *_places(lights)),
             lambda: self.lookout.where_it_changes(
@@ -248,7 +254,7 @@ class IndirectLight:
         mark_faces(ids, seen)
         children = m // len(self.surface.coarse_faces)
         seen = seen[:m].reshape(-1, children).any(axis=1).repeat(children)
-        wanted = np.zeros(self.surface.vertices, dtype=bool)
+        wanted = np.zeros(self.surface.gathering, dtype=bool)
         wanted[mesh.faces[:m][seen]] = True
         return wanted
 

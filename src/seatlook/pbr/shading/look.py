@@ -7,14 +7,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from seatlook.errors import InputError, did_you_mean
-from seatlook.model import Appearance, Cover, FloatArray
+from seatlook.model import Appearance, Cover, FloatArray, Surroundings
 from seatlook.pbr.kernels import stage, stitch, tables
 from seatlook.pbr.kernels.brdf import MATERIAL
 from seatlook.pbr.reflectance.instrument import resolved
 from seatlook.pbr.reflectance.measured import load_maps, map_sets, mean_albedo
 from seatlook.pbr.reflectance.relief import load_textures, texture_index
 from seatlook.pbr.reflectance.tables import load_tables
-from seatlook.pbr.shading.foam import FOAM
+from seatlook.pbr.shading.foam import FOAM, HIDDEN_FOAM
+from seatlook.pbr.shading.ground import VALANCE, floor_look
 
 Looks = Appearance | Mapping[str, Appearance] | None
 
@@ -22,8 +23,13 @@ Looks = Appearance | Mapping[str, Appearance] | None
 _NODES, _SHEEN_NODES = 129, 513
 
 
-def look_of(cover: Cover, appearance: Looks, thread: stitch.Thread) -> stage.Look:
-    """Materials of all panels, then the foam, with what is tabulated for them.
+def look_of(
+    cover: Cover,
+    appearance: Looks,
+    thread: stitch.Thread,
+    surroundings: Surroundings | None = None,
+) -> stage.Look:
+    """Materials of all panels, then foam, floor and valance, with what is tabulated for them.
 
     Raises
     ------
@@ -31,6 +37,8 @@ def look_of(cover: Cover, appearance: Looks, thread: stitch.Thread) -> stage.Loo
         An appearance for a panel that the cover does not have.
     """
     looks = [*_per_panel(cover, appearance), FOAM]
+    if surroundings is not None:
+        looks[-1:] = [HIDDEN_FOAM, floor_look(surroundings.albedo), VALANCE]
     materials = pack_materials(looks)
     textures = load_textures(*{int(k) for k in materials["texture"] if k >= 0})
     maps = load_maps(map_sets(looks))

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from seatlook.errors import InputError, RenderError
-from seatlook.model import Camera, FloatArray, Light, Rig, Solution, Thread
+from seatlook.model import Camera, FloatArray, Light, Rig, Solution, Thread, surroundings_named
 from seatlook.pbr.backend import offscreen_backend
 from seatlook.pbr.cache import Cache
 from seatlook.pbr.kernels import (
@@ -32,13 +32,13 @@ from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_card, white_o
 from seatlook.pbr.light.windows import with_windows
 from seatlook.pbr.picture import Image
 from seatlook.pbr.quality import Quality, quality_named, quality_within
+from seatlook.pbr.shading.backdrop import backdrop
+from seatlook.pbr.shading.eye import eye_of
 from seatlook.pbr.shading.indirect import IndirectLight, camera_key
 from seatlook.pbr.shading.look import Looks, look_of
 from seatlook.pbr.shading.seam import pack_thread
 from seatlook.pbr.shading.surface import Surface, drawn_surface
 
-# A grey card of 18 % fills the background.
-_CARD = 0.18
 # Foam in front of the cover by less than this [m] is a coarse foam face that cuts through it.
 _COMPRESSED = 0.02
 
@@ -51,7 +51,7 @@ class Studio:
     are those of another shape of the same cover; outlines and shadows stay. With ``like``, the
     studio of another shape of the same cover, what does not depend on the shape is taken from that;
     with ``seen``, one whose vertices lie on the same rays of the only camera that is used, so are
-    faces seen.
+    faces seen. ``surroundings``: name of what is around the seat.
 
     Raises
     ------
@@ -68,19 +68,24 @@ class Studio:
         thread: Thread | None = None,
         like: Studio | None = None,
         seen: Studio | None = None,
+        surroundings: str = "plain",
     ) -> None:
+        around = surroundings_named(surroundings)
         offscreen_backend()
         self.solution = solution
         self.thread = pack_thread(thread or solution.cover.thread)
+        self.surroundings, self._around = surroundings, around
         self._seen, self._like = seen, seen or like
         if self._like and self._like.solution.cover is not solution.cover:
             raise InputError.single(
                 "like", got="another cover", expected="the same in another shape"
             )
+        if self._like and self._like.surroundings != surroundings:
+            raise InputError.single("surroundings", got=surroundings, expected="those of like")
         first = self._like.surface if self._like else None
-        self.surface: Surface = drawn_surface(solution, like=first)
+        self.surface: Surface = drawn_surface(solution, around, like=first)
         if shading is not None:
-            mesh = _with_normals(self.surface.mesh, drawn_surface(shading).mesh)
+            mesh = _with_normals(self.surface.mesh, drawn_surface(shading, around).mesh)
             self.surface = replace(self.surface, mesh=mesh)
         self._cache = Cache()
 
@@ -109,23 +114,24 @@ class Studio:
         level = quality if isinstance(quality, Quality) else quality_named(quality)
         if target_error is not None:
             level = quality_within(target_error)
-        look = look_of(self.solution.cover, appearance, self.thread)
+        look = look_of(self.solution.cover, appearance, self.thread, self._around)
         ids = self.faces(camera, level.factor)
         ev, white, card, lux = ev100(rig), white_of(rig), white_card(rig), lux_at_seat(rig)
         own, rig = len(rig.lights), with_windows(rig)
         visibility = self._visibility(rig, own, camera, level, ids)
         same = self._coherent(rig, camera, level, ids, visibility)
         radiance = np.empty((*camera.size[::-1], 3), dtype=np.float32)
+        indirect = self._indirect.light(rig, look, level, camera, ids)
         brightest = shade.shade(
             stage.Stage(
                 self.surface.mesh,
                 eye_of(camera, level.factor),
                 look,
                 pack_lights(rig, level.factor),
-                self._indirect.light(rig, look, level, camera, ids),
+                indirect,
             ),
             shade.Raster(ids, visibility, same, level.factor, level.relief),
-            _CARD * 2.5 * 2.0**ev / np.pi * white,
+            backdrop(self.surface, self._around, rig, ev, indirect),
             radiance,
         )
         _check(radiance, brightest, ids, visibility, camera)
@@ -137,14 +143,25 @@ class Studio:
             card=card,
             camera=camera,
             cover=self._cover(camera, level.factor),
+            alpha=self._alpha(ids, level.factor),
+            surroundings=self.surroundings,
         )
+
+    def _alpha(self, ids: npt.NDArray[np.int32], factor: int) -> npt.NDArray[np.float32] | None:
+        """Share of each pixel that is not transparent, (h, w); None where all of it is."""
+        if self._around is None or self._around.shown:
+            return None
+        share = np.empty((len(ids) // factor, ids.shape[1] // factor), dtype=np.float32)
+        surface.covered(ids, len(self.surface.mesh.faces), (0, 0), factor, share)
+        return share
 
     def _cover(self, camera: Camera, factor: int) -> npt.NDArray[np.float32]:
         """Share of each pixel that shows the cover, (h, w)."""
 
         def make() -> npt.NDArray[np.float32]:
             share = np.empty(camera.size[::-1], dtype=np.float32)
-            surface.covered(self.faces(camera, factor), self.surface.opaque, factor, share)
+            around = (self.surface.faces, self.surface.fronts)
+            surface.covered(self.faces(camera, factor), self.surface.opaque, around, factor, share)
             share.flags.writeable = False
             return share
 
@@ -182,14 +199,20 @@ class Studio:
         size = (camera.size[0] * factor, camera.size[1] * factor)
         ids = np.empty(size[::-1], dtype=np.int32)
         for part in parts_of(size):
-            seen = window.faces(mesh.vertices, mesh.faces[:m], camera, size, part)
-            ids[part.lines, part.columns] = seen
+            cover = window.faces(mesh.vertices, mesh.faces[:m], camera, size, part)
+            ids[part.lines, part.columns] = cover
         for part in parts_of(size) if len(mesh.faces) > m else ():
             foam = window.faces(mesh.vertices, mesh.faces[m:], camera, size, part)
-            self._stick_out(
-                foam, ids[part.lines, part.columns], eye_of(camera, factor).part(*part[:2])
-            )
-        if ids.max() < 0:
+            eye = eye_of(camera, factor).part(*part[:2])
+            self._stick_out(foam, ids[part.lines, part.columns], eye)
+        seen = ids >= 0
+        if self._around is not None and self.surface.ground is not None:
+            first, floor = self.surface.faces, self.surface.ground.floor
+            on_floor = (ids >= first) & (ids < first + floor)
+            if not self._around.shown:
+                ids[on_floor] = -1
+            seen = seen & ~on_floor
+        if not seen.any():
             raise RenderError(f"camera {camera.name}: nothing is in the picture")
         return ids
 
@@ -300,6 +323,7 @@ def render(
     camera: Camera,
     quality: str | Quality = "standard",
     target_error: float | None = None,
+    surroundings: str = "plain",
 ) -> Image:
     """Draw a solved cover under a rig.
 
@@ -312,6 +336,8 @@ def render(
         which these are T1, T3 and T4, or a :class:`~seatlook.pbr.quality.Quality`
     target_error : instead of ``quality``: the cheapest tier whose charted FLIP against path
         tracing is at most this
+    surroundings : around the seat: ``plain`` (nothing), ``sweep`` (a bright floor, a valance over
+        the hem), ``cabin`` (the same, dark) or ``transparent`` (a floor that is not seen)
 
     Returns
     -------
@@ -326,48 +352,23 @@ def render(
     -----
     The studios of the two solutions drawn last are cached; make your own :class:`Studio` to decide.
     """
-    return studio(solution).render(
+    return studio(solution, surroundings).render(
         appearance, rig=rig, camera=camera, quality=quality, target_error=target_error
     )
 
 
-_studios: OrderedDict[int, Studio] = OrderedDict()
+_studios: OrderedDict[tuple[int, str], Studio] = OrderedDict()
 
 
-def studio(solution: Solution) -> Studio:
+def studio(solution: Solution, surroundings: str = "plain") -> Studio:
     """Return the studio of a solution, making it where it is not among the last two."""
-    key = id(solution)
+    key = (id(solution), surroundings)
     if key not in _studios:
-        _studios[key] = Studio(solution)
+        _studios[key] = Studio(solution, surroundings=surroundings)
         if len(_studios) > 2:
             _studios.popitem(last=False)
     _studios.move_to_end(key)
     return _studios[key]
-
-
-def eye_of(camera: Camera, factor: int) -> surface.Eye:
-    """Rays through the centres of ``factor`` x ``factor`` samples per pixel.
-
-    Raises
-    ------
-    InputError
-        The camera sits on its target or looks along its up vector.
-    """
-    forward = camera.target - camera.position
-    right = np.cross(forward, camera.up)
-    if np.linalg.norm(right) <= 1e-9 * np.linalg.norm(camera.up) * np.linalg.norm(forward):
-        raise InputError.single(
-            f"camera {camera.name}",
-            got=f"position {camera.position.tolist()}, up {camera.up.tolist()}",
-            expected="a target away from the position and an up vector across the view",
-        )
-    forward = forward / np.linalg.norm(forward)
-    right = right / np.linalg.norm(right)
-    down = -np.cross(right, forward)
-    width, height = camera.size[0] * factor, camera.size[1] * factor
-    step = 2 * np.tan(np.radians(camera.vertical_fov_deg) / 2) / height
-    first = forward - 0.5 * (width - 1) * step * right - 0.5 * (height - 1) * step * down
-    return surface.Eye(np.array(camera.position), first, step * right, step * down)
 
 
 def _with_normals(mesh: surface.Mesh, other: surface.Mesh) -> surface.Mesh:

@@ -8,11 +8,12 @@ import numpy as np
 from scipy import sparse
 
 from seatlook.errors import RenderError
-from seatlook.model import FloatArray, IntArray, Solution
+from seatlook.model import Cover, FloatArray, IntArray, Solution, Surroundings
 from seatlook.pbr.kernels.surface import Mesh
 from seatlook.pbr.shading import seam
 from seatlook.pbr.shading.foam import with_foam
-from seatlook.pbr.shading.subdivision import Refined, sharp_corners, subdivide
+from seatlook.pbr.shading.ground import Ground, ground_of
+from seatlook.pbr.shading.subdivision import Refined, boundary_edges, sharp_corners, subdivide
 
 # Refinement stops below this edge length [m], about a pixel of the named views, or at this size.
 _FINE = 0.0012
@@ -28,7 +29,9 @@ class Surface:
     mesh : Mesh           cover first, then foam; the foam's ``panel`` is one past the last panel
     refined : Refined     how the cover's vertices come from the solved ones
     vertices, faces : int how many of the mesh's are the refined panels
-    opaque : int          how many faces belong to the cover with its allowance turned in
+    opaque : int          how many faces stop light: of the cover, of what is around it, and of the
+        allowance turned in
+    ground : Ground       what is around the seat, after the panels; or None
     coarse_faces : (m, 3) the solver's faces
     element_size : float  [m] of the solver's faces
     """
@@ -40,6 +43,17 @@ class Surface:
     opaque: int
     coarse_faces: IntArray
     element_size: float
+    ground: Ground | None = None
+
+    @property
+    def gathering(self) -> int:
+        """How many vertices gather light: those of the panels, then those around the seat."""
+        return self.vertices + (len(self.ground.vertices) if self.ground else 0)
+
+    @property
+    def fronts(self) -> int:
+        """How many faces shine: those of the panels, then those around the seat."""
+        return self.faces + (len(self.ground.faces) if self.ground else 0)
 
     def faces_of_level(self, level: int) -> IntArray:
         """Faces (m, 3) of the panels refined ``level`` times: each keeps a corner in each child."""
@@ -61,13 +75,15 @@ class Surface:
         return m._replace(faces=m.faces[: self.opaque], panel=m.panel[: self.opaque])
 
 
-def drawn_surface(solution: Solution, *, like: Surface | None = None) -> Surface:
-    """Refine the solved cover until its elements do not show, and add the foam.
+def drawn_surface(
+    solution: Solution, surroundings: Surroundings | None = None, *, like: Surface | None = None
+) -> Surface:
+    """Refine the solved cover until its elements do not show, add what is around it and the foam.
 
     Parameters
     ----------
     like : of the same cover in another shape; the foam is as that has pressed it, and what does
-        not depend on the shape is shared
+        not depend on the shape is shared, and so is what is around the seat
 
     Raises
     ------
@@ -99,20 +115,25 @@ def drawn_surface(solution: Solution, *, like: Surface | None = None) -> Surface
         panel,
         seam.coordinates(uv, _panel_of_vertices(refined.faces, panel, len(x)), edges),
     )
-    n, m = len(x), len(refined.faces)
+    n, m, ground = len(x), len(refined.faces), None
+    if surroundings is not None:
+        ground = _ground(mesh, edges, cover)
+        mesh = _with_ground(mesh, ground, len(cover.panel_names) + 1)
     if len(edges):
         mesh = _with_allowance(mesh, edges)
     k = len(mesh.faces)
     if cover.foam is not None:
         mesh = with_foam(mesh, cover.foam, len(cover.panel_names), cover=n)
-    return Surface(mesh, refined, n, m, k, np.array(cover.faces), cover.element_size)
+    coarse = np.array(cover.faces)
+    return Surface(mesh, refined, n, m, k, coarse, cover.element_size, ground)
 
 
 def _moved(like: Surface, x: FloatArray, edges: seam.SewnEdges) -> Surface:
     """The surface of the same cover with its refined vertices at ``x`` (n, 3)."""
     old, faces = like.mesh, like.refined.faces
-    points, normals = [x], [vertex_normals(x, faces)]
-    warp = [_warp(x, old.uv[: len(x)], faces)]
+    around = slice(len(x), like.gathering)
+    points, normals = [x, old.vertices[around]], [vertex_normals(x, faces), old.normals[around]]
+    warp = [_warp(x, old.uv[: len(x)], faces), old.warp[around]]
     if len(edges):
         below, _, origin = seam.turned_in(x, normals[0], edges)
         points.append(below)
@@ -164,6 +185,29 @@ def _sum_to_vertices(values: FloatArray, faces: np.ndarray, n: int) -> FloatArra
     m = len(faces)
     corners = (np.ones(3 * m), faces.ravel(), np.arange(0, 3 * m + 1, 3))
     return np.asarray(sparse.csc_array(corners, shape=(n, m)) @ values)
+
+
+def _ground(mesh: Mesh, edges: seam.SewnEdges, cover: Cover) -> Ground:
+    """Floor and valance of a drawn cover."""
+    free = boundary_edges(mesh.faces)
+    sewn = np.isin(free @ [len(mesh.vertices), 1], edges.start * len(mesh.vertices) + edges.end)
+    foam = np.zeros((0, 3)) if cover.foam is None else np.array(cover.foam.vertices)
+    return ground_of(mesh.vertices, mesh.normals, free[~sewn], foam)
+
+
+def _with_ground(mesh: Mesh, ground: Ground, panel: int) -> Mesh:
+    """Mesh with a floor, whose panel is the one given, and a valance, whose panel is the next."""
+    g = len(ground.vertices)
+    own = panel + (np.arange(len(ground.faces)) >= ground.floor)
+    return Mesh(
+        np.vstack([mesh.vertices, ground.vertices]),
+        np.vstack([mesh.normals, ground.normals]),
+        np.vstack([mesh.warp, np.zeros((g, 3))]),
+        np.vstack([mesh.uv, np.zeros((g, 2))]),
+        np.vstack([mesh.faces, len(mesh.vertices) + ground.faces]),
+        np.concatenate([mesh.panel, own]),
+        np.vstack([mesh.seam, np.full((g, 2), np.inf)]),
+    )
 
 
 def _with_allowance(mesh: Mesh, edges: seam.SewnEdges) -> Mesh:
