@@ -24,8 +24,13 @@ def flattened(surface, **choices):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)
         flat = flatten(surface, **choices)
-    spoiled = {*choices.get("ease", {}), *choices.get("short", {})}
-    even = [s for s in flat.seams if not any(name in s.seam for name in spoiled)]
+    edges = flat.pattern.edges
+    spoiled = {*choices.get("ease", {})} | {
+        seam.name  # which may be called after a line, not after its panels
+        for seam in flat.pattern.seams
+        if {edges[name].panel for name in (seam.a, *seam.b)} & {*choices.get("short", {})}
+    }
+    even = [s for s in flat.seams if s.seam not in spoiled]
     assert all(abs(seam.difference) < 5e-5 for seam in even)
     return flat
 
