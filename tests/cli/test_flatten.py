@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shlex
 import subprocess
 import sys
 
@@ -140,3 +141,29 @@ def test_a_bare_panel_has_no_cover(form):
     pattern = io.read_pattern(form / "bare/pattern.dxf", form / "bare/seams.toml")
     assert len(pattern.panels) == 1
     assert pattern.seams == ()
+
+
+@pytest.mark.parametrize("fault", ["fin", "twice"])
+def test_a_surface_that_must_be_mended_is_refused_with_the_command_that_does_it(
+    tmp_path, monkeypatch, capsys, fault
+):
+    """The command is copied from the message as it is; what it writes is flattened."""
+    monkeypatch.chdir(tmp_path)
+    flat, faces = rectangle("uns", 40.0, 30.0, 3.0)
+    points = np.column_stack([flat[:, 0], np.zeros(len(flat)), -flat[:, 1]])
+    middle = int(np.linalg.norm(flat - [20.0, 15.0], axis=1).argmin())
+    ring = np.flatnonzero((faces == middle).any(axis=1))
+    if fault == "fin":
+        points = np.vstack([points, points[middle] + [0.0, 0.5, 0.0]])
+        faces = np.vstack([faces, [*faces[ring[0], :2], len(points) - 1]])
+    else:
+        faces = np.vstack([faces, faces[ring[:1]]])
+    io.write_obj(1e-3 * points, faces, tmp_path / "my form.obj")
+    assert run(["flatten", "my form.obj", "--unit", "cm", "--up", "y", "--out", "out"]) == 2
+    said = capsys.readouterr().err
+    command = said[said.index("seatlook mend") : said.index("--sheet") + len("--sheet")]
+    assert command.startswith(
+        "seatlook mend 'my form.obj' --unit cm --up y --out 'my form-mended.obj'"
+    )
+    assert run(shlex.split(command)[1:]) == 0
+    assert run(["flatten", "my form-mended.obj", "--out", "out"]) == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,6 +22,8 @@ from seatlook.model.progress import Progress, silent
 
 PATTERN, SEAMS, PLACEMENT = "pattern.dxf", "seams.toml", "placement.toml"
 PANELS = "panels.obj"
+_MEND_COMMAND = "seatlook mend"
+_MEND = f"{_MEND_COMMAND} SURFACE"  # in hints of what knows no file
 
 
 class FlattenChoices(TypedDict, total=False):
@@ -69,19 +72,24 @@ def flatten_surface(
     folder, lines = Path(out), choices.get("seam_lines")
     progress = choices.get("progress", silent)
     progress("read", file=Path(surface).name)
-    form = read_design(
-        Path(surface), unit=choices.get("unit"), up=choices.get("up"), seam_lines=lines
-    )
+    unit, up = choices.get("unit"), choices.get("up")
     fabric = choices.get("fabric")
-    flat = flatten(
-        form,
-        fabrics={} if fabric is None else dict.fromkeys(form.panel_names, fabric),
-        allowance=choices.get("allowance", 0.010),
-        ease=choices.get("ease", MappingProxyType({})),
-        short=choices.get("short", MappingProxyType({})),
-        tension=choices.get("tension", 0.0),
-        progress=progress,
-    )
+    try:
+        form = read_design(Path(surface), unit=unit, up=up, seam_lines=lines)
+        flat = flatten(
+            form,
+            fabrics={} if fabric is None else dict.fromkeys(form.panel_names, fabric),
+            allowance=choices.get("allowance", 0.010),
+            ease=choices.get("ease", MappingProxyType({})),
+            short=choices.get("short", MappingProxyType({})),
+            tension=choices.get("tension", 0.0),
+            progress=progress,
+        )
+    except InputError as error:
+        mend = _mend_words(Path(surface), unit, up)
+        raise InputError(
+            replace(p, hint=p.hint.replace(_MEND, mend)) for p in error.problems
+        ) from error
     write_panels(form, folder / PANELS)
     write_flat_pattern(flat, folder)
     progress("draw", what="strain")
@@ -107,6 +115,14 @@ def read_design(
             problem if problem.file else replace(problem, file=seam_lines)
             for problem in error.problems
         ) from None
+
+
+def _mend_words(surface: Path, unit: Unit | None, up: Up | None) -> str:
+    """Return the command that mends this surface, to be copied."""
+    axes = [f"--unit {unit}" if unit else "", f"--up {up}" if up else ""]
+    out = surface.with_name(f"{surface.stem}-mended.obj")
+    words = [_MEND_COMMAND, shlex.quote(str(surface)), *axes, "--out", shlex.quote(str(out))]
+    return " ".join(filter(None, words))
 
 
 def write_panels(form: DesignSurface, path: Path) -> None:

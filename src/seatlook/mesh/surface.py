@@ -63,9 +63,11 @@ def boundary_loops(faces: IntArray) -> list[IntArray]:
     half = _half_edges(faces)
     n = int(faces.max(initial=-1)) + 1
     single = half[~np.isin(half @ [n, 1], half @ [1, n])]
-    if len(np.unique(single[:, 0])) != len(single):
+    touching = len(np.unique(single[:, 0])) != len(single)
+    if touching or len(np.setxor1d(single[:, 0], single[:, 1])):
+        got = "boundary curves that touch in a vertex" if touching else "an edge of three faces"
         raise InputError.single(
-            "faces", got="boundary curves that touch in a vertex", expected="a manifold surface",
+            "faces", got=got, expected="a manifold surface",
             hint="seatlook mend SURFACE --sheet takes out what is on it twice or hangs on it",
         )  # fmt: skip
     following = dict(single.tolist())
