@@ -10,6 +10,7 @@ from seatlook.chain.assess import assess
 from seatlook.chain.files import reusable
 from seatlook.errors import InputError
 from seatlook.improvement.warm import is_warm, solve_warm
+from seatlook.model.scene import Freedom
 from seatlook.solver import solve
 
 MM = 1e-3
@@ -98,3 +99,7 @@ def test_warm_agrees_with_cold_within_the_scatter_and_takes_a_part_of_its_time(
     assert abs(np.mean(bias)) < 3.0 * error
     assert np.mean(kept) >= 0.9
     assert np.median(ratio) <= 0.5
+
+
+def test_what_may_change_is_no_part_of_a_result(solved, scene):
+    assert reusable(solved, replace(scene, improve=Freedom(edge=0.001, frozen=("INSERT.FRONT",))))

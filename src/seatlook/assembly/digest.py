@@ -14,7 +14,8 @@ import numpy as np
 def content_digest(value: Any) -> str:
     """SHA-256 of a value: core types, arrays, texts, numbers, and sequences and mappings of them.
 
-    Where files lie does not count: paths are left out.
+    Where files lie does not count: paths are left out, and so are fields that say they change no
+    result.
 
     Raises
     ------
@@ -40,6 +41,8 @@ def _parts(value: Any) -> Iterator[bytes]:
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
         yield type(value).__name__.encode()
         for field in dataclasses.fields(value):
+            if not field.metadata.get("digest", True):
+                continue
             yield field.name.encode()
             yield from _parts(getattr(value, field.name))
     elif isinstance(value, Mapping):

@@ -27,6 +27,8 @@ FIRST_SIZE = 0.007  # [m] of a mesh that is made before it is known where it is 
 TOLERANCES = (0.01, 0.5)  # [1] of zone means: finer no mesh gets in hours, coarser says nothing
 ELEMENT_SIZES = (5e-4, 0.1)  # [m] from fine to coarse: below is thread, above no seat is left
 LARGEST_SEED = 2**31
+# Of fields that change no result: they are no part of a digest.
+NO_RESULT = {"digest": False}
 # Contradictions that [check] can let pass.
 ALLOWED = (
     "twisted seam",
@@ -282,7 +284,7 @@ class Scene:
     surroundings: str = "plain"
     boxes: tuple[ZoneBox, ...] = ()
     limits: tuple[Limit, ...] = ()
-    improve: Freedom = field(default_factory=Freedom)
+    improve: Freedom = field(default_factory=Freedom, metadata=NO_RESULT)
     design: Design | None = None
     hem: bool = False
     allowed: tuple[str, ...] = ()
