@@ -25,6 +25,7 @@ from seatlook.seats.files import write_demo
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
+from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
 TABLE = Path(__file__).parents[1] / "docs" / "charts" / "tolerance.csv"
 COLUMNS = ("material", "kind", "asked", "seed", "vertices", "cpu_seconds", "status", "zone",
@@ -122,6 +123,10 @@ def chart() -> None:
                 print(f"{material} {kind} {asked:g} {unit} seed {seed}: "
                       f"{seconds:.1f} s, {away:.1f} %")  # fmt: skip
         panel.set(xscale="log", yscale="log", xlabel="CPU seconds", title=material)
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.set_major_locator(FixedLocator((1, 2, 3, 5, 10, 20, 30, 50, 100)))
+            axis.set_major_formatter(ScalarFormatter())
+            axis.set_minor_formatter(NullFormatter())
         panel.text(0.03, 0.03, f"against {finest[2]:g} mm", fontsize=7, transform=panel.transAxes)
         panel.legend(fontsize=7)
     np.atleast_1d(panels)[0].set_ylabel("error of zone means of W2 [%]")
