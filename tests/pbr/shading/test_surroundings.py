@@ -147,6 +147,19 @@ def test_the_share_of_the_cover_knows_no_floor(solution, swept):
     assert 0.8 * bare.sum() < with_floor.sum() <= bare.sum()
 
 
+def test_another_shape_of_the_cover_stands_on_the_same_floor(solution, swept):
+    """Taken from the studio of the first shape, the same shape is the same picture."""
+    again = Studio(replace(solution), like=swept, surroundings="sweep")
+    camera = looking(30)
+    np.testing.assert_allclose(
+        again.render(GREY, rig=HIGH, camera=camera).radiance,
+        swept.render(GREY, rig=HIGH, camera=camera).radiance,
+        rtol=1e-3,
+    )
+    with pytest.raises(InputError, match="surroundings: got plain, expected those of like"):
+        Studio(replace(solution), like=swept)
+
+
 def test_studios_of_other_surroundings_are_others(solution):
     assert studio(solution, "cabin") is studio(solution, "cabin")
     assert studio(solution, "cabin") is not studio(solution)
