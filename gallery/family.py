@@ -10,7 +10,7 @@ of one seed are put together at the end, shapes in rows.
 from __future__ import annotations
 
 import argparse
-import csv
+import sys
 import tempfile
 import time
 import warnings
@@ -20,17 +20,20 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
 import seatlook
 from seatlook.errors import InputError, InputWarning, SeatlookError
 from seatlook.seats import SHAPES, write_demo
+from support.kept_rows import KeptRows
 
 DOCS = Path(__file__).parents[1] / "docs"
-TABLE = DOCS / "charts" / "family.csv"
 SHEET = DOCS / "pictures" / "family.jpg"
 COLUMNS = ("shape", "seed", "number", "scale", "bolster_mm", "element_size_mm", "vertices",
            "write_cpu_s", "solve_cpu_s", "check", "status", "buried_10mm_percent",
            "buried_20mm_percent", "bare_percent", "seam_gap_mm", "gap_p95_mm",
            "crossing_pairs", "reason")  # fmt: skip
+TABLE = KeptRows("family", COLUMNS)
 TILE = (400, 300)
 
 
@@ -85,24 +88,6 @@ def figures(values: dict[str, float]) -> dict[str, str]:
     }
 
 
-def rows() -> list[dict[str, str]]:
-    """Return the finished rows."""
-    if not TABLE.exists():
-        return []
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def keep(row: dict[str, object]) -> None:
-    """Append a row to the table."""
-    fresh = not TABLE.exists()
-    with TABLE.open("a", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        if fresh:
-            table.writeheader()
-        table.writerow(row)
-
-
 def sheet(pictures: Path, seats: list[tuple[str, int, float, float]]) -> None:
     """Put the pictures of one seed together, a shape in each row."""
     count = 1 + max(number for _, number, _, _ in seats)
@@ -130,7 +115,7 @@ def main() -> None:
     warnings.simplefilter("ignore", InputWarning)  # steep bolsters strain; see the strain maps
     done = {
         (row["shape"], int(row["seed"]), int(row["number"]), float(row["element_size_mm"]))
-        for row in rows()
+        for row in TABLE.read()
     }
     seats = drawn(chosen.seed, chosen.sizes)
     for shape, number, scale, bolster in seats:
@@ -145,7 +130,7 @@ def main() -> None:
                 picture.save(chosen.pictures / f"{shape}-{number}.png")
             except SeatlookError as error:
                 row = {"status": "refused", "reason": str(error)}
-        keep({**head, **row})
+        TABLE.add([{**head, **row}])
         print(*head.values(), *row.values(), flush=True)
     sheet(chosen.pictures, seats)
 

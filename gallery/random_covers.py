@@ -10,7 +10,6 @@ delete one to repeat it. The counts of all rows are printed at the end.
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 import warnings
 from pathlib import Path
@@ -19,35 +18,18 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 from seatlook.errors import InputWarning
 from seatlook.results.resolution import SHARPEST
+from support.kept_rows import KeptRows
 from support.random_covers import drawn, measure
 
-TABLE = Path(__file__).parents[1] / "docs" / "charts" / "random_covers.csv"
 COLUMNS = ("seed", "number", "shape", "scale", "bolster_mm", "material", "insert",
            "tension_percent", "fault", "element_size_mm", "vertices", "solve_cpu_s", "status",
            "sharp_folds", "largest_fold_deg", "reason")  # fmt: skip
-
-
-def rows() -> list[dict[str, str]]:
-    """Return the finished rows."""
-    if not TABLE.exists():
-        return []
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def keep(row: dict[str, object]) -> None:
-    """Append a row to the table."""
-    fresh = not TABLE.exists()
-    with TABLE.open("a", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        if fresh:
-            table.writeheader()
-        table.writerow(row)
+TABLE = KeptRows("random_covers", COLUMNS)
 
 
 def counted() -> str:
     """Return how many of all rows ended how."""
-    done = rows()
+    done = TABLE.read()
     statuses = [row["status"] for row in done]
     parts = [f"{statuses.count(status)} {status}" for status in dict.fromkeys(statuses)]
     sharp = sum(row["status"] == "resolved" and row["sharp_folds"] != "0" for row in done)
@@ -66,7 +48,7 @@ def main() -> None:
     parser.add_argument("--coarsest", type=float, default=14.0, help="largest element size [mm]")
     chosen = parser.parse_args()
     warnings.simplefilter("ignore", InputWarning)  # steep bolsters strain, and faults are meant
-    done = {(int(row["seed"]), int(row["number"])) for row in rows()}
+    done = {(int(row["seed"]), int(row["number"])) for row in TABLE.read()}
     for number in range(chosen.first, chosen.first + chosen.count):
         if (chosen.seed, number) in done:
             continue
@@ -79,7 +61,7 @@ def main() -> None:
             "element_size_mm": f"{draw.element_mm:.1f}",
         }  # fmt: skip
         row = head | measure(draw)
-        keep(row)
+        TABLE.add([row])
         print(*row.values(), flush=True)
     print(counted())
 

@@ -10,14 +10,16 @@ that are there are not run again. Says at the end what changed by how much, agai
 from __future__ import annotations
 
 import argparse
-import csv
 import itertools
+import sys
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import seatlook
 from seatlook.chain.case import Case
@@ -26,8 +28,8 @@ from seatlook.model import Camera
 from seatlook.seats import write_demo
 from seatlook.visibility.cross_check import Measures, more_visible
 from seatlook.visibility.view import Sampling, View
+from support.kept_rows import KeptRows
 
-TABLE = Path(__file__).parents[1] / "docs" / "charts" / "score_holds.csv"
 ZONE = "INSERT interior"
 EASE = {"INSERT-BOLSTER_L": 0.04}
 SIZES, SEEDS, DISTANCES = (320, 640, 1920), (1, 2, 3, 4), (1.0, 2.0, 4.0)
@@ -35,6 +37,7 @@ MESH, COARSE = 7.0, 10.0  # mm
 MEASURES = ("vwi", "log_ratio", "dissimilarity")
 COLUMNS = ("part", "variant", "texture", "rig", *MEASURES, "apparent_contrast_percent",
            "zone_vwi", "zone_contrast_percent")  # fmt: skip
+TABLE = KeptRows("score_holds", COLUMNS)
 Row = dict[str, str]
 Cell = tuple[str, str]
 
@@ -108,28 +111,10 @@ def rows(part: str, variant: str, seat: Case, view: View) -> Iterator[Row]:
             yield dict(zip(COLUMNS, cells, strict=True))
 
 
-def read() -> list[Row]:
-    """Return the rows that are there."""
-    if not TABLE.exists():
-        return []
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def keep(new: list[Row]) -> None:
-    """Append rows to the table."""
-    fresh = not TABLE.exists()
-    with TABLE.open("a", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        if fresh:
-            table.writeheader()
-        table.writerows(new)
-
-
 def report() -> None:
     """Print one line for each row of the bars."""
     grids: dict[Cell, dict[Cell, Row]] = {}
-    for row in read():
+    for row in TABLE.read():
         grids.setdefault((row["part"], row["variant"]), {})[row["texture"], row["rig"]] = row
     base = grids["eased", "as it is"]
     print("| part | variant | VWI of it | zone VWI | zone contrast |")
@@ -180,9 +165,9 @@ def main() -> None:
     warnings.simplefilter("ignore", InputWarning)  # steep bolsters strain; see the strain maps
     for part in PARTS if chosen.only is None else (chosen.only,):
         for variant, seat, view in views(part, chosen.folder):
-            if any((r["part"], r["variant"]) == (part, variant) for r in read()):
+            if any((r["part"], r["variant"]) == (part, variant) for r in TABLE.read()):
                 continue
-            keep(list(rows(part, variant, seat, view)))
+            TABLE.add(list(rows(part, variant, seat, view)))
     if chosen.only is None:
         report()
 

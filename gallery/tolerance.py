@@ -10,7 +10,6 @@ arguments only that case is run: KIND is "uniform", ASKED then an element size i
 
 from __future__ import annotations
 
-import csv
 import sys
 import tempfile
 from collections import defaultdict
@@ -19,17 +18,20 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
 import seatlook
 from seatlook.model import Solution
 from seatlook.seats.files import write_demo
+from support.kept_rows import KeptRows
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
-TABLE = Path(__file__).parents[1] / "docs" / "charts" / "tolerance.csv"
 COLUMNS = ("material", "kind", "asked", "seed", "vertices", "cpu_seconds", "status", "zone",
            "area_cm2", "w2_mean", "w2_p95", "w2_mesh_error")  # fmt: skip
+TABLE = KeptRows("tolerance", COLUMNS)
 EASED = "INSERT-BOLSTER_L"
 SMALL = 0.02  # mean W2 below which the error counts absolutely
 Case = tuple[str, str, float, int]
@@ -66,23 +68,6 @@ def rows_of(case: Case, solution: Solution) -> list[dict[str, str]]:
     return [dict(zip(COLUMNS, map(str, line), strict=True)) for line in values]
 
 
-def rows() -> list[dict[str, str]]:
-    """Return the finished rows."""
-    if not TABLE.exists():
-        return []
-    with TABLE.open(encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
-def keep(found: list[dict[str, str]]) -> None:
-    """Append rows to the table."""
-    with TABLE.open("a", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        if not file.tell():
-            writer.writeheader()
-        writer.writerows(found)
-
-
 def case_of(row: dict[str, str]) -> Case:
     """Which case a row is of."""
     return row["material"], row["kind"], float(row["asked"]), int(row["seed"])
@@ -101,7 +86,7 @@ def error(zones: list[dict[str, str]], truth: dict[str, float]) -> float:
 def chart() -> None:
     """Draw the error over CPU seconds, against the finest mesh of one size; print the rows."""
     cases: dict[Case, list[dict[str, str]]] = defaultdict(list)
-    for row in rows():
+    for row in TABLE.read():
         cases[case_of(row)].append(row)
     materials = list(dict.fromkeys(case[0] for case in cases))
     figure, panels = plt.subplots(1, len(materials), figsize=(3.4 * len(materials), 3.6))
@@ -131,14 +116,14 @@ def chart() -> None:
         panel.legend(fontsize=7)
     np.atleast_1d(panels)[0].set_ylabel("error of zone means of W2 [%]")
     figure.tight_layout()
-    figure.savefig(TABLE.with_suffix(".svg"), metadata={"Date": None})
+    figure.savefig(TABLE.path.with_suffix(".svg"), metadata={"Date": None})
 
 
 def main(wanted: tuple[Case, ...]) -> None:
     """Run what is missing, keep every case as it is finished, and draw all."""
     for case in wanted:
-        if case not in {case_of(row) for row in rows()}:
-            keep(rows_of(case, solved(*case)))
+        if case not in {case_of(row) for row in TABLE.read()}:
+            TABLE.add(rows_of(case, solved(*case)))
             print(*case, "done", flush=True)
     chart()
 

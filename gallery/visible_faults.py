@@ -10,12 +10,14 @@ rows that are there are not run again. Says at the end how many cells tell the s
 from __future__ import annotations
 
 import argparse
-import csv
+import sys
 import warnings
 from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import seatlook
 from seatlook.chain.case import Case
@@ -23,8 +25,8 @@ from seatlook.errors import InputError, InputWarning
 from seatlook.seats import write_demo
 from seatlook.visibility.observer import VISIBLE
 from seatlook.visibility.view import View
+from support.kept_rows import KeptRows
 
-TABLE = Path(__file__).parents[1] / "docs" / "charts" / "visible_faults.csv"
 # shape -> the seam that is too long, and the panel whose line is
 FAULTS = {
     "cushion": ("INSERT-BOLSTER_L", "INSERT"),
@@ -37,6 +39,7 @@ FAULTS = {
 EASE = 0.03
 COLUMNS = ("shape", "state", "texture", "rig", "vwi", "apparent_contrast_percent", "zone_vwi",
            "zone_contrast_percent", "share_in_top_pixels", "wave_inside_percent")  # fmt: skip
+TABLE = KeptRows("visible_faults", COLUMNS)
 
 
 def solved(folder: Path, shape: str, *, spoiled: bool) -> Case:
@@ -78,28 +81,10 @@ def rows(shape: str, state: str, seat: Case) -> list[dict[str, str]]:
     return out
 
 
-def read() -> list[dict[str, str]]:
-    """Return the rows that are there."""
-    if not TABLE.exists():
-        return []
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def keep(new: list[dict[str, str]]) -> None:
-    """Append rows to the table."""
-    fresh = not TABLE.exists()
-    with TABLE.open("a", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        if fresh:
-            table.writeheader()
-        table.writerows(new)
-
-
 def report() -> None:
     """Say of every shape what its cells tell."""
     cells: dict[str, dict[tuple[str, str], dict[str, float]]] = defaultdict(dict)
-    for row in read():
+    for row in TABLE.read():
         pair = cells[row["shape"]].setdefault((row["texture"], row["rig"]), {})
         pair[row["state"]] = float(row["zone_vwi"])
     print(f"| shape | cells of 9 at least doubled | of 9 good ones below {VISIBLE:g} | good |"
@@ -119,14 +104,14 @@ def main() -> None:
     parser.add_argument("--only", choices=tuple(FAULTS))
     chosen = parser.parse_args()
     warnings.simplefilter("ignore", InputWarning)  # steep bolsters strain; see the strain maps
-    done = {(row["shape"], row["state"]) for row in read()}
+    done = {(row["shape"], row["state"]) for row in TABLE.read()}
     for shape in FAULTS:
         for state in ("good", "spoiled"):
             if (shape, state) in done or chosen.only not in (None, shape):
                 continue
             seat = solved(chosen.folder / f"{shape}-{state}", shape, spoiled=state == "spoiled")
             try:
-                keep(rows(shape, state, seat))
+                TABLE.add(rows(shape, state, seat))
             except InputError as error:
                 print(shape, state, error, flush=True)
     report()

@@ -13,7 +13,7 @@ prints in how many zones (mean W2 above 0.02) the sum holds, and how large it is
 from __future__ import annotations
 
 import argparse
-import csv
+import sys
 import tempfile
 import time
 import warnings
@@ -21,16 +21,19 @@ from pathlib import Path
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
 import seatlook
 from seatlook.chain.precision import solve_to
 from seatlook.errors import InputWarning
 from seatlook.model.zones import FREE_EDGE
 from seatlook.results.resolution import CURVATURE_ERROR
 from seatlook.seats import SHAPES, write_demo
+from support.kept_rows import KeptRows
 
-TABLE = Path(__file__).parents[1] / "docs" / "charts" / "zone_errors.csv"
 COLUMNS = ("cover", "material", "shape", "zone", "element_size_mm", "w2_mean", "mesh_error",
            "scatter", "truth", "truth_scatter", "status", "cpu_s")  # fmt: skip
+TABLE = KeptRows("zone_errors", COLUMNS)
 MATERIALS = ("leather-laminate", "suede-laminate", "black-leather", "pvc")
 LEAST = 0.02  # mean W2, below which a zone has no wrinkles to speak of
 
@@ -77,14 +80,6 @@ def measure(
     return rows
 
 
-def read() -> list[dict[str, str]]:
-    """Rows that are there already."""
-    if not TABLE.exists():
-        return []
-    with TABLE.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def summary(rows: list[dict[str, str]]) -> str:
     """How often the companions hold, and how large they are."""
     held, ratio = [], []
@@ -114,19 +109,16 @@ def main() -> None:
     options = parser.parse_args()
     begin = time.monotonic()
     for cover in drawn(options.seed, options.covers):
-        if any((row["cover"], row["material"]) == (str(cover[0]), cover[1]) for row in read()):
+        if any(
+            (row["cover"], row["material"]) == (str(cover[0]), cover[1]) for row in TABLE.read()
+        ):
             continue
         if time.monotonic() - begin > 60.0 * options.minutes:
             break
         rows = measure(cover, options.per_wave, options.seeds)
-        fresh = not TABLE.exists()
-        with TABLE.open("a", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            if fresh:
-                writer.writeheader()
-            writer.writerows(rows)
-        print(cover, summary(read()), flush=True)
-    print(summary(read()))
+        TABLE.add(rows)
+        print(cover, summary(TABLE.read()), flush=True)
+    print(summary(TABLE.read()))
 
 
 if __name__ == "__main__":
