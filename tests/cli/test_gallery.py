@@ -138,6 +138,22 @@ def test_render_turns_only_panoramas(evaluated, tmp_path, angle, message):
 
 
 @pytest.mark.render
+def test_render_looks_from_where_it_is_told(evaluated, tmp_path):
+    words = ["render", "scene.toml", "result.npz", "--rig", "sun", "--texture", "suede"]
+    words += ["--no-maps", "--quality", "draft", "--target-mm", "0", "0", "0", "--position-mm"]
+    for name, place, code in (
+        ("left", ("1500.0", "-1500.0", "1500.0"), 0),
+        ("right", ("-1500.0", "-1500.0", "1500.0"), 0),
+        ("above", ("0", "0", "1500.0"), 2),
+    ):
+        done = seatlook(*words, *place, "--out", str(tmp_path / name), cwd=evaluated)
+        assert done.returncode == code, done.stderr
+    assert "right above or below the target" in done.stderr
+    left, right = (next((tmp_path / n).rglob("*.png")).read_bytes() for n in ("left", "right"))
+    assert left != right
+
+
+@pytest.mark.render
 def test_render_refuses_a_rig_the_scene_does_not_have(evaluated, tmp_path):
     out = tmp_path / "out"
     words = ["render", "scene.toml", "result.npz", "--out", str(out), "--rig", "son"]

@@ -12,7 +12,9 @@ from seatlook.cli._output import progress
 from seatlook.errors import InputError
 
 if TYPE_CHECKING:
-    from seatlook.model import Rig
+    from seatlook.model import Camera, Rig
+
+Place = tuple[float, float, float]
 
 
 def render(
@@ -24,6 +26,8 @@ def render(
     texture: Names = (),
     rig: Names = (),
     view: str | None = None,
+    position_mm: Place | None = None,
+    target_mm: Place | None = None,
     maps: Annotated[bool, Parameter(help="Draw the wrinkle maps as well.")] = True,
     quality: str = "standard",
     tone: Literal["clamp", "neutral"] = "clamp",
@@ -47,6 +51,10 @@ def render(
         Rig of the scene; may be given more than once. All of them if not given.
     view
         Camera of the scene, or a named view. The first of the scene if not given.
+    position_mm
+        Look from this place instead, x y z. The viewer of the page writes it for what it shows.
+    target_mm
+        Look at this place instead, x y z.
     quality
         draft, standard or high, or a tier from T0 to T4.
     tone
@@ -78,9 +86,8 @@ def render(
         part = replace(part, rigs=_turned(part.rigs, panorama_azimuth_deg))
     if surroundings is not None:
         part = replace(part, surroundings=surroundings)
-    canvas = Canvas(
-        solution=solution, camera=seat.camera(view), out=out, run=solution.cover.scene_digest
-    )
+    camera = _camera(seat.camera(view), position_mm, target_mm)
+    canvas = Canvas(solution=solution, camera=camera, out=out, run=solution.cover.scene_digest)
     if not 0.0 <= adaptation <= 1.0:
         raise InputError.single("--adaptation", got=adaptation, expected="0 to 1")
     exposures = Exposures(
@@ -90,6 +97,19 @@ def render(
         draw_pictures(part, canvas, show, exposures=exposures, paths=picture_paths(seat.scene))
         if maps:
             draw_maps(seat.assessment, canvas, show)
+
+
+def _camera(camera: Camera, position_mm: Place | None, target_mm: Place | None) -> Camera:
+    """The camera, moved to where the command line says."""
+    import numpy as np
+
+    from seatlook.model.light.camera import upright
+
+    if position_mm is None and target_mm is None:
+        return camera
+    position = camera.position if position_mm is None else np.array(position_mm) / 1e3
+    target = camera.target if target_mm is None else np.array(target_mm) / 1e3
+    return upright(camera, position, target)
 
 
 def _turned(rigs: tuple[Rig, ...], azimuth_deg: float) -> tuple[Rig, ...]:

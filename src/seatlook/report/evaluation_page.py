@@ -52,7 +52,7 @@ def write_report(
         score=score,
         summary=first_lines(evaluation.case.assessment, score, checks),
         close_up=_close_up(evaluation, score),
-        viewer=viewer_section(evaluation.case, evaluation.camera),
+        viewer=viewer_section(evaluation.case, evaluation.camera, evaluation.folder),
     )
     return write_page(data, evaluation.folder, single_file=single_file)
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import base64
 import importlib
-import io
+import shlex
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +17,15 @@ import pytest
 from PIL import Image as Pillow
 
 import seatlook
+from seatlook import io
 from seatlook.chain.case import Case
+from seatlook.model import Rig, bulb
 from seatlook.report import write_page
 from seatlook.report.page.types import ViewerSection
 from seatlook.report.viewer.section import viewer_section
 from seatlook.report.viewer_page import viewer_page
 from support.browsers import FLAGS
+from support.commands import seatlook as command
 from support.pages import page_data, write_png
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(600)]
@@ -38,7 +42,8 @@ def case(demo_scene) -> Case:
 
 @pytest.fixture(scope="module")
 def viewer(case) -> ViewerSection:
-    return viewer_section(case, case.camera(None))
+    io.write_result(case.solution, case.scene.path.with_name("result.npz"))
+    return viewer_section(case, case.camera(None), case.scene.path.parent)
 
 
 @pytest.fixture(scope="module")
@@ -85,11 +90,15 @@ def pixels(page: Any) -> np.ndarray:
     """What the viewer shows, (h, w, 3)."""
     data = page.evaluate("() => document.getElementById('viewer-canvas').toDataURL('image/png')")
     content = base64.b64decode(data.split(",")[1])
-    return np.asarray(Pillow.open(io.BytesIO(content)).convert("RGB")).astype(float)
+    return np.asarray(Pillow.open(BytesIO(content)).convert("RGB")).astype(float)
 
 
 def differs(before: np.ndarray, after: np.ndarray) -> bool:
     return float(np.abs(before - after).mean()) > 0.5
+
+
+def said(page: Any, name: str) -> str:
+    return page.locator(f"#viewer-{name}").text_content()
 
 
 def put(page: Any, name: str, value: str) -> None:
@@ -204,6 +213,44 @@ def test_what_is_copied_is_a_light_and_a_look_that_a_scene_can_hold(page, tmp_pa
     assert len(said["appearance"]["albedo"]) == 3
 
 
+def test_the_command_draws_the_same_view(page, case, tmp_path):
+    open_viewer(page)
+    for name in ("front 34", "top"):
+        page.get_by_role("button", name=name).click()
+        for moves in ("", "turned"):
+            if moves:
+                page.locator("#viewer-canvas").focus()
+                for key in ("ArrowLeft", "ArrowLeft", "Shift+ArrowUp", "+"):
+                    page.keyboard.press(key)
+            settle(page)
+            page.locator("#viewer-command").click()
+            text = page.locator("#viewer-text").input_value()
+            assert ("--position-mm" in text) == bool(moves)
+            program, *words = shlex.split(text)
+            assert program == "seatlook"
+            words[words.index("view")] = str(tmp_path / f"{name}{moves}")
+            done = command(*words, "--quality", "draft", cwd=case.scene.path.parent)
+            assert done.returncode == 0, done.stderr
+            (drawn,) = (tmp_path / f"{name}{moves}").rglob("*.png")
+            shown = pixels(page)
+            there = (
+                Pillow.open(drawn).convert("RGB").resize(shown.shape[1::-1], Pillow.Resampling.BOX)
+            )
+            away = np.abs(np.asarray(there).astype(float) - shown).max(axis=2) > 40
+            # The seat is a third of the picture; a view that is off by 1 % of it is off on more.
+            assert away.mean() < 0.03
+
+
+def test_names_are_quoted_for_a_shell(page, case):
+    open_viewer(page)
+    page.locator("#viewer-rig").select_option(index=1)
+    put(page, "power", "1")
+    page.locator("#viewer-command").click()
+    words = shlex.split(page.locator("#viewer-text").input_value())
+    assert f"--rig={case.scene.rigs[1].name}" in words
+    assert "It takes light and material as they were" in said(page, "kept")
+
+
 def test_it_is_sent_as_one_file_that_looks_the_same(page, browser, tmp_path):
     write_png(
         tmp_path / "fabric.png", np.random.default_rng(0).integers(0, 255, (40, 60, 3), np.uint8)
@@ -240,6 +287,32 @@ def test_a_notebook_shows_it_in_a_frame(browser, case, tmp_path):
     frame.locator("#viewer-open").click()
     frame.locator(STILL).wait_for(timeout=90_000)
     assert frame.locator("#viewer-canvas").is_visible()
+    assert messages == []
+    context.close()
+
+
+def test_what_a_light_loses_is_said(browser, case, tmp_path):
+    lamps = tuple(
+        bulb(lumen=100.0, position_mm=(100.0 * k, 0.0, 900.0), radius_mm=20.0) for k in range(10)
+    )
+    rigs = (
+        Rig(name="many", lights=lamps),
+        Rig(name="garden", lights=(), panorama=np.full((4, 8, 3), 300.0)),
+        Rig(name="one", lights=lamps[:1]),
+    )
+    lit = Case(replace(case.scene, rigs=rigs), solution=case.solution)
+    file = viewer_page(lit, lit.camera(None)).save(tmp_path / "seat.html")
+    context = browser.new_context(offline=True, viewport={"width": 760, "height": 700})
+    page, messages = context.new_page(), []
+    listen(page, messages)
+    page.goto(file.as_uri())
+    open_viewer(page)
+    assert "8 of its 10 lamps" in said(page, "rig-note")
+    assert not page.locator("#viewer-command").is_visible()
+    page.locator("#viewer-rig").select_option(index=1)
+    assert said(page, "rig-note") == "Its sky is a picture; here it is even, as bright."
+    page.locator("#viewer-rig").select_option(index=2)
+    assert not page.locator("#viewer-rig-note").is_visible()
     assert messages == []
     context.close()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -80,6 +80,29 @@ class Camera:
         x = self.size[0] / 2 + focal * (away @ right) / depth
         y = self.size[1] / 2 - focal * (away @ np.cross(right, ahead)) / depth
         return np.column_stack([x, y]), np.asarray(depth)
+
+
+def upright(camera: Camera, position: FloatArray, target: FloatArray) -> Camera:
+    """Return a camera that looks from another place [m] at another, its upper edge up.
+
+    Raises
+    ------
+    InputError
+        Places above each other: which side is up is then not known.
+
+    Examples
+    --------
+    >>> top = named_view("top", target=np.zeros(3))
+    >>> upright(top, np.array([1.0, 0.0, 0.0]), np.zeros(3)).up.tolist()
+    [0.0, 0.0, 1.0]
+    """
+    up = np.array([0.0, 0.0, 1.0])
+    sight = np.asarray(target) - position
+    if np.linalg.norm(np.cross(sight, up)) < 1e-6 * np.linalg.norm(sight):
+        raise InputError.single(
+            "position", got="right above or below the target", expected="a place beside that"
+        )
+    return replace(camera, name="free", position=position, target=target, up=up)
 
 
 def named_view(

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from seatlook.chain.case import Case
+from seatlook.chain.files import RESULT
 from seatlook.model import VIEWS, Camera, Light, Rig
 from seatlook.model.light.lamps import ILLUMINANTS, linear_srgb, planck_colour
 from seatlook.pbr.light.exposure import ev100
@@ -24,8 +27,11 @@ from seatlook.report.viewer.script import joined
 MOST_LIGHTS = 8
 
 
-def viewer_section(case: Case, camera: Camera) -> ViewerSection:
-    """Everything the viewer shows of a case; ``camera`` is that of the page's pictures."""
+def viewer_section(case: Case, camera: Camera, folder: Path | None = None) -> ViewerSection:
+    """Everything the viewer shows of a case; ``camera`` is that of the page's pictures.
+
+    ``folder`` is where the case's result is kept; None where that is not known.
+    """
     stage = studio(case.solution)
     buffers = Buffers()
     triangles, geometry = add_geometry(stage, buffers)
@@ -38,6 +44,7 @@ def viewer_section(case: Case, camera: Camera) -> ViewerSection:
         "wrinkles": _wrinkles(case, stage),
         "seams": _seams(case, buffers),
         "seat": list(SEAT),
+        "files": _files(case, folder),
     }
     content["looks"] = [{**look, "words": look_words(look["name"])} for look in content["looks"]]
     content["buffers"] = buffers.packed()
@@ -58,7 +65,19 @@ def _rig(rig: Rig) -> dict[str, Any]:
         "white": white_of(rig).tolist(),
         "lux": lux_at_seat(rig)["total"],
         "panorama": rig.panorama is not None,
+        "left": max(len(rig.lights) - MOST_LIGHTS, 0),
     }
+
+
+def _files(case: Case, folder: Path | None) -> list[str]:
+    """Scene and result as seen from the scene's folder, for a command; none where not known."""
+    path = case.scene.path
+    if path is None or folder is None:
+        return []
+    home, kept = path.resolve().parent, folder.resolve()
+    if home.anchor != kept.anchor:
+        return []
+    return [path.name, Path(os.path.relpath(kept / RESULT, home)).as_posix()]
 
 
 def _light(light: Light) -> dict[str, Any]:

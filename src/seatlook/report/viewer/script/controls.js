@@ -160,6 +160,7 @@ export class Controls {
     const place = scene.lightPlace(middle);
     const [first] = scene.rig(middle).lights;
     select("rig").value = String(scene.rigNumber);
+    note("rig", noteOf(scene.base));
     const [elevation, azimuth] = [place.elevation, place.azimuth].map((angle) => Math.round(angle / DEGREE));
     input("elevation").value = String(elevation);
     input("azimuth").value = String(azimuth);
@@ -181,6 +182,7 @@ export class Controls {
   showMaterial() {
     const m = this.scene.main;
     select("look").value = String(this.scene.lookNumber);
+    box("look-note").hidden = !this.scene.content.measured.includes(this.scene.lookName);
     for (const name of ["hex", "lab"]) input(name).removeAttribute("aria-invalid");
     input("colour").value = hexOf(m.albedo);
     input("hex").value = hexOf(m.albedo);
@@ -202,6 +204,21 @@ export class Controls {
     box("high").textContent = `${Number(map.high.toPrecision(3))}${unit}`;
     box("meaning").textContent = `${map.name}: ${map.meaning}`;
   }
+}
+
+/** @param {string} name @param {string} text */
+function note(name, text) {
+  box(`${name}-note`).textContent = text;
+  box(`${name}-note`).hidden = text === "";
+}
+
+/** What the viewer does not show of a light as the pictures do. @param {import("./drawing/payload.js").Rig} rig */
+function noteOf({ lights, left, panorama }) {
+  return [
+    left ? `Shown with ${lights.length} of its ${lights.length + left} lamps, so darker than in the pictures.` : "",
+    panorama ? "Its sky is a picture; here it is even, as bright." : "",
+    lights.length > 1 ? `The dial moves the first of its ${lights.length} lamps or parts.` : "",
+  ].filter(Boolean).join(" ");
 }
 
 /** Power in the light's own unit. @param {import("./drawing/payload.js").Light} light */

@@ -6,6 +6,7 @@ import { Pointer } from "./pointer.js";
 import { Renderer } from "./drawing/renderer.js";
 import { Scene } from "./scene.js";
 import { arraysOf } from "./drawing/payload.js";
+import { commandOf } from "./command.js";
 import { box, button, element, handOut, input, say } from "./page.js";
 import { pageOf, sentChoice } from "./send.js";
 import { photoOf, readPhoto } from "./photo.js";
@@ -51,7 +52,11 @@ class Viewer {
   listen() {
     button("reset").addEventListener("click", () => this.reset());
     button("save").addEventListener("click", () => void this.save());
-    button("toml").addEventListener("click", () => void this.copyToml());
+    button("toml").addEventListener("click", () => {
+      void this.copy(this.scene.toml(this.renderer.mesh.middle), "");
+    });
+    button("command").hidden = this.content.files.length === 0;
+    button("command").addEventListener("click", () => void this.copyCommand());
     button("send").addEventListener("click", () => this.send());
     new ResizeObserver(() => {
       if (this.fit()) this.moved();
@@ -189,17 +194,27 @@ class Viewer {
     if (blob instanceof Blob) handOut(blob, "seat.png");
   }
 
-  async copyToml() {
-    const text = this.scene.toml(this.renderer.mesh.middle);
+  async copyCommand() {
+    const own = this.scene.own || this.photo !== null;
+    await this.copy(commandOf(this.scene), ` Run it in the folder of the scene.${
+      own ? " It takes light and material as they were: \"Copy as TOML\" has yours." : ""}`);
+  }
+
+  /**
+   * Show a text and copy it, where the browser allows that.
+   * @param {string} text
+   * @param {string} more to be said of it
+   */
+  async copy(text, more) {
     const area = element("text", HTMLTextAreaElement);
     area.hidden = false;
     area.value = text;
     try {
       await navigator.clipboard.writeText(text);
-      say("Copied.");
+      box("kept").textContent = `Copied.${more}`;
     } catch {
       area.select();
-      say("Selected: press Ctrl+C.");
+      box("kept").textContent = `Selected: press Ctrl+C.${more}`;
     }
   }
 
@@ -211,7 +226,7 @@ class Viewer {
     };
     const page = pageOf(choice, this.room, this.canvas.toDataURL("image/png"));
     handOut(new Blob([page], { type: "text/html" }), "seat.html");
-    say("The file seat.html shows this seat in any browser.");
+    box("kept").textContent = "The file seat.html shows this seat in any browser.";
   }
 
   /** @param {import("./scene.js").Choice} choice */

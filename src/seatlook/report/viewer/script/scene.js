@@ -34,6 +34,15 @@ export class Scene {
     this.camera.state = stateOf(view);
   }
 
+  get lookName() {
+    return this.content.looks[this.lookNumber].name;
+  }
+
+  /** Whether light or look are no longer those of the scene. */
+  get own() {
+    return this.place !== null || this.power !== 0 || this.follow || Object.keys(this.changes).length > 0;
+  }
+
   get base() {
     return this.content.rigs[this.rigNumber];
   }

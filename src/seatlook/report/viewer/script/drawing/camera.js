@@ -4,7 +4,7 @@ import { along, anglesOf, cross, lookAt, minus, norm, perspective, product, towa
 
 /** @typedef {import("./payload.js").View} View */
 /** @typedef {{target: number[], azimuth: number, elevation: number, distance: number, fov: number,
- *   aspect: number}} State */
+ *   aspect: number, view: string}} State */
 
 const STEEPEST = Math.PI / 2;
 const NEAREST = 0.03;
@@ -20,7 +20,7 @@ export function stateOf(view) {
   if (STEEPEST - elevation < 1e-4) [azimuth, elevation] = [Math.atan2(-view.up[0], view.up[1]), STEEPEST];
   return {
     target: [...view.target], azimuth, elevation, distance: norm(away), fov: view.fov,
-    aspect: view.size[0] / view.size[1],
+    aspect: view.size[0] / view.size[1], view: view.name,
   };
 }
 

@@ -3,7 +3,8 @@
 /** @typedef {{name: string, near: boolean, vector: number[], intensity: number, colour: number[],
  *   size: number, sides: number[][] | null, twoSided: boolean, kind: string, colourKeys: string[]}} Light */
 /** @typedef {{name: string, words: string, lights: Light[], sky: number[], ev100: number,
- *   white: number[], lux: number, panorama: boolean}} Rig */
+ *   white: number[], lux: number, panorama: boolean,
+ *   left: number}} Rig */
 /** @typedef {{name: string, position: number[], target: number[], up: number[], fov: number,
  *   size: number[]}} View */
 /** @typedef {{albedo: number[], metalness: number, roughness: number, f0: number, sheen: number[],
@@ -21,7 +22,7 @@
  *   parts: Part[], materials: Material[], looks: {name: string, words: string,
  *   materials: number[]}[], reliefs: Record<string, Relief>, thread: Record<string, any>,
  *   measured: string[], maps: Layer[], rigs: Rig[], views: View[], wrinkles: Wrinkle[],
- *   seams: string[], seat: number[],
+ *   seams: string[], seat: number[], files: string[],
  *   buffers: {places: Record<string, Place>, content: string}}} Content */
 /** @typedef {Int8Array | Uint8Array | Int16Array | Int32Array | Uint16Array
  *   | Uint32Array | Float32Array} Numbers */
