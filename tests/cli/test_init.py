@@ -208,8 +208,11 @@ def test_what_cannot_be_guessed_is_written_as_far_as_it_goes_and_listed(own, tmp
 def test_a_pattern_out_of_scale_with_its_foam_is_named(own, tmp_path, capsys):
     cut = one_panel(tmp_path / "cut.dxf", 5.0)
     words = ["init", str(cut), str(own / "foam.obj"), "--out", str(tmp_path / "out")]
-    with pytest.warns(InputWarning, match="5000 mm is unusual"):
+    with pytest.warns(InputWarning) as notes:
         assert run(words) == 0
+    said = [str(note.message) for note in notes]
+    assert any("out of scale? (500 mm at a tenth of the scale)" in text for text in said)
+    assert any("piece ALONE: a size of 5000 mm is unusual" in text for text in said)
     assert "the pattern is too large for it" in capsys.readouterr().err
 
 

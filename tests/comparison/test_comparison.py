@@ -14,6 +14,7 @@ import seatlook
 from seatlook import compare, io
 from seatlook.chain import case as module
 from seatlook.chain.case import Case
+from seatlook.chain.local import solve_scene
 from seatlook.cli import run
 from seatlook.comparison.compare import Comparison, variant_names
 from seatlook.comparison.visibility import VariantScores, score_variants
@@ -21,7 +22,6 @@ from seatlook.comparison.widgets import sliders
 from seatlook.errors import InputError
 from seatlook.model.scene import Limit
 from seatlook.report.comparison_page import write_comparison
-from seatlook.solver import solve
 from seatlook.wrinkle import INDICES
 from support.scene_files import write_two_panels
 
@@ -181,7 +181,12 @@ def test_a_variant_that_cannot_be_scored_says_why(comparison):
 
 def test_a_kept_result_is_taken_if_it_may_stand_for_the_scene(folder, comparison, monkeypatch):
     solved = []
-    monkeypatch.setattr(module, "solve", lambda cover, **k: solved.append(cover) or solve(cover))
+
+    def counted(scene, *words, **options):
+        solved.append(scene)
+        return solve_scene(scene, *words, **options)
+
+    monkeypatch.setattr(module, "solve_scene", counted)
     scenes = {name: v.scene for name, v in comparison.variants.items()}
     compare(scenes, keep=str(folder / "kept"))
     assert solved == []

@@ -165,7 +165,7 @@ def even_places(at: FloatArray, spacing: FloatArray) -> FloatArray:
     Examples
     --------
     >>> even_places(np.array([0.0, 1.0, 2.0]), np.array([0.25, 0.5, 0.5])).round(3)
-    array([0.   , 0.312, 0.625, 0.938, 1.4  , 2.   ])
+    array([0.   , 0.333, 0.667, 1.   , 1.5  , 2.   ])
     """
     density = 0.5 * (1.0 / spacing[1:] + 1.0 / spacing[:-1])
     counted = np.concatenate([[0.0], np.cumsum(np.diff(at) * density)])

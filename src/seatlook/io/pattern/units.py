@@ -71,7 +71,11 @@ def other_unit(scale: float, size: float, header: Mapping[str, str]) -> str:
     """Return in which unit a pattern would have the size [mm] of a cover, as a hint."""
     named = _INSUNITS.get(header.get("$INSUNITS", ""))
     fitting = _in_each_unit(size / scale, named, besides=scale)
-    return fitting[0] if fitting else f"{10 * size:.4g} mm at ten times the scale"
+    if fitting:
+        return fitting[0]
+    if size > _COVER_MM[1]:
+        return f"{size / 10:.4g} mm at a tenth of the scale"
+    return f"{10 * size:.4g} mm at ten times the scale"
 
 
 def _in_each_unit(

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import ConvexHull
 
+from seatlook.mesh.polyline import arc_length, points_at
 from seatlook.model import Appearance, FloatArray, IntArray
 
 # Rings of the floor [m] beside the seat's outline, closer where its shadow is; the last one is as
@@ -126,7 +127,7 @@ def _valance(
 def _even(p: FloatArray, n: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Closed line (k, 3) in even steps without small waves, and the unit normals along it."""
     closed = np.vstack([p, p[:1]])
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
+    arc = arc_length(closed)
     count = max(8, int(arc[-1] / _STEP))
     at = np.arange(count) * arc[-1] / count
     values = np.column_stack([closed, np.vstack([n, n[:1]])])
@@ -140,9 +141,9 @@ def _floor(points: FloatArray, low: float) -> tuple[FloatArray, FloatArray, IntA
     """Rings around the outline of ``points`` (n, 2) seen from above, at the height ``low``."""
     outline = points[ConvexHull(points).vertices]
     closed = np.vstack([outline, outline[:1]])
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
+    arc = arc_length(closed)
     at = np.arange(_SECTORS) * arc[-1] / _SECTORS
-    line = np.column_stack([np.interp(at, arc, column) for column in closed.T])
+    line = points_at(closed, at)
     along = np.roll(line, -1, axis=0) - np.roll(line, 1, axis=0)
     out = np.column_stack([along[:, 1], -along[:, 0]])
     out /= np.linalg.norm(out, axis=1, keepdims=True)

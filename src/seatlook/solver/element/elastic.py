@@ -62,6 +62,7 @@ class ElasticSheet:
                 expected="one fabric for every face",
             )
         self.faces, self.rest = faces, rest
+        self.area = areas(rest, faces)
         self.edges = edges_of(rest, faces)
         self._panel, self._fabrics = panel, tuple(fabrics)
         self.thickness = np.array([f.thickness for f in fabrics])[panel]
@@ -72,7 +73,6 @@ class ElasticSheet:
         self.bending_stiffness = stiffness
         self._rows = slope_rows(rest, faces, self.edges)
         self.folds = None if hem is None else Folds(hem, self.edges, self._rows)
-        self.area = areas(rest, faces)
         self.shape: NaturalShape | None = None
         stiffness = self._recover(stiffness, clamped, positions)
         self.mass = np.bincount(
