@@ -198,8 +198,11 @@ def sentences(score: SceneScore) -> Iterator[str]:
         yield f"Least visible texture under these lights: {least}."
     elif len(grid.textures) > 1:
         yield "No texture can be told to be the least visible: the measures disagree."
+    alike: dict[str, list[str]] = {}
     for first, second, rig in grid.not_separable():
-        yield f"Not separable under {rig}: {first} and {second}; the measures disagree."
+        alike.setdefault(rig, []).append(f"{first} and {second}")
+    for rig, pairs in alike.items():
+        yield f"Not separable under {rig}: {', '.join(pairs)}; the measures disagree."
     yield (
         f"The wrinkles in view are {number(1e3 * score.ladder.height)} mm from peak to valley "
         f"(95 % of their area). Reference: {view.mode}"
