@@ -9,13 +9,17 @@ import pytest
 from seatlook import io
 from seatlook.assembly import with_mesh
 from seatlook.assembly.digest import content_digest
+from seatlook.chain import local
 from seatlook.chain.case import Case
 from seatlook.chain.local import (
     BEFORE,
+    SIZED,
     coarser,
     coarsest_size,
     finest_size,
     forecast,
+    solve_scene,
+    with_error,
     with_scatter,
 )
 from seatlook.errors import InputError
@@ -153,3 +157,48 @@ def test_progress_goes_from_the_first_mesh_to_the_last(solved, shown):
     meshes = [figures["mesh"] for name, figures in shown if name == "solve"]
     assert len(set(meshes)) >= 2
     assert meshes[-1] == f"{len(solved.solution.cover.rest)} vertices:"
+
+
+@pytest.fixture(scope="module")
+def missed():
+    """A scene that is stiff and smooth, whose first fine mesh misses the tolerance."""
+    return asked(0.05, bending=3e-3)
+
+
+def test_a_mesh_that_misses_its_tolerance_is_left_for_a_finer_one(missed, monkeypatch):
+    tried = []
+
+    def watched(scene, fine, coarse):
+        result = with_error(scene, fine, coarse)
+        tried.append((len(fine.cover.rest), result.figures[REACHED]))
+        return result
+
+    monkeypatch.setattr(local, "with_error", watched)
+    solution = solve_scene(missed)
+    vertices, errors = zip(*tried, strict=True)
+    assert len(tried) >= 2
+    assert list(vertices) == sorted(set(vertices))
+    assert all(error > 0.05 for error in errors[:-1])
+    assert errors[-1] == solution.figures[REACHED] <= 0.05
+    # However badly it is missed, the last mesh is the answer and says so.
+    monkeypatch.setattr(local, "_MESHES", 1)
+    assert solve_scene(missed).figures[REACHED] > 0.05
+
+
+def test_stages_on_a_finer_mesh_are_resumed_there(missed, tmp_path):
+    whole = Case(missed)
+    whole.solve_in_stages(tmp_path)
+    assert whole.resolution.error <= 0.05
+    assert io.read_result(tmp_path / BEFORE).figures[SIZED] < 1.0
+    again = Case(missed)
+    again.solve_in_stages(tmp_path, resume=True)
+    np.testing.assert_array_equal(again.solution.positions, whole.solution.positions)
+
+
+def test_a_mean_that_falls_errs_by_no_more_than_itself(solved):
+    """W2 is nowhere below zero, so a mean has no further to fall than to there."""
+    fine, coarse = solved.solution, solve_scene(coarser(solved.scene))
+    mid = fine.strain_mid
+    flat = dataclasses.replace(fine, strain_top=mid, strain_bottom=mid)
+    rows = Case(solved.scene, solution=with_error(solved.scene, flat, coarse)).assessment.zones
+    assert all(row.w2_mesh_error <= row["w2_mean"] < 1e-9 for row in rows)

@@ -1,9 +1,11 @@
 """Triangles that pass through each other, against cases made by hand and a plain count."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
-from seatlook.mesh import intersecting_pairs
+from seatlook.mesh import intersecting_pairs, intersection
 from support.meshes import rectangle
 
 FLOOR = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
@@ -120,3 +122,46 @@ def test_sheets_that_nothing_crosses():
         both = np.concatenate([flat, flat + np.array([0.0, 0.0, gap])])
         result = intersecting_pairs(both, np.concatenate([faces, faces + len(X)]))
         assert bool(len(result)) == crossing
+
+
+def needles(count, *, size, seed=0):
+    """Small triangles (count, 3, 3) about a unit square in the plane, standing across it."""
+    rng = np.random.default_rng(seed)
+    middle = np.column_stack([rng.random((count, 2)), np.zeros(count)])
+    return middle[:, None] + size * rng.standard_normal((count, 3, 3))
+
+
+def test_triangles_of_all_sizes_find_the_pairs_that_each_two_alone_have():
+    mixed = [needles(15, size=0.5 * 3.0**-k, seed=k) for k in range(4)]
+    points = np.concatenate(mixed).reshape(-1, 3)
+    faces = np.arange(len(points)).reshape(-1, 3)
+    alone = [
+        (i, j)
+        for i in range(len(faces))
+        for j in range(i + 1, len(faces))
+        if len(intersecting_pairs(points, faces[[i, j]]))
+    ]
+    assert len(alone) > 25
+    np.testing.assert_array_equal(intersecting_pairs(points, faces), alone)
+
+
+def test_blocks_of_pairs_change_nothing(monkeypatch):
+    points = needles(80, size=0.1).reshape(-1, 3)
+    faces = np.arange(len(points)).reshape(-1, 3)
+    whole = intersecting_pairs(points, faces)
+    assert len(whole) > 7
+    monkeypatch.setattr(intersection, "_BLOCK", 7)
+    np.testing.assert_array_equal(intersecting_pairs(points, faces), whole)
+
+
+def test_a_large_triangle_does_not_make_pairs_of_all_small_ones():
+    floor = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]])
+    points = np.concatenate([floor, needles(4000, size=1e-3)]).reshape(-1, 3)
+    faces = np.arange(len(points)).reshape(-1, 3)
+    tracemalloc.start()
+    pairs = intersecting_pairs(points, faces)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert (pairs[:, 0] == 0).sum() > 1000
+    # Each of the 8 million pairs would take 16 bytes.
+    assert peak < 32e6

@@ -1,12 +1,14 @@
 """Solve to a tolerance: on a mesh that is fine where the cover wrinkles, begun from a coarser one.
 
 The coarser one is solved as ever, or to a larger tolerance, in turn. Its wrinkles tell where the
-finer one is fine, and the difference between both tells the error.
+finer one is fine, and the difference between both tells the error. Where that is more than was
+asked for, a still finer mesh is made.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -36,6 +38,10 @@ _COARSEST = 0.014  # m; the shape of a seat needs no finer
 _APART = 1.3  # times as large elements, from which a difference of two meshes is one of sizes
 _ORDER = 1.5  # at which means converge: 2 where there are waves, 1 at the kink of a hooked seam
 _BEFORE = 0.35  # of the work is done on the meshes before, as an estimate
+_MESHES = 3  # are made for a tolerance at most, each finer by as much as the one before missed it
+_AIM = 0.9  # times the tolerance is what a mesh is made for where one missed it
+_FINER = 0.5  # times the tolerance that sized a mesh sizes the next one at least
+SIZED = "w2_sized"  # figure of a coarser mesh: share of the tolerance that the next is made for
 _SECONDS = 1e-3  # CPU seconds for a vertex: docs/charts/tolerance.csv
 _ADDED = ("steps", "iterations", "cpu_seconds")
 
@@ -138,9 +144,7 @@ def solve_scene(
     chosen = settings or SolverSettings()
     if scene.tolerance is None:
         return _solved(cover or assemble(scene), None, chosen, progress)
-    before = solve_scene(coarser(scene), settings=chosen, progress=_part(progress, 0.0, _BEFORE))
-    fine = _solved(local_cover(scene, before), before, chosen, _part(progress, _BEFORE, 1.0))
-    return _together(before, with_error(scene, fine, before))
+    return _refined(scene, chosen, progress, _MESHES)
 
 
 def solve_scene_in_stages(
@@ -155,7 +159,8 @@ def solve_scene_in_stages(
     """Solve as ``solve_in_stages`` does, on the mesh that a tolerance asks for if there is one.
 
     The stages are those of the last mesh, which is sewn and hooked from its start. What it was
-    made from is kept beside them. A stage that is done again keeps the mesh.
+    made from is kept beside them. A mesh that misses the tolerance is left for a finer one, and the
+    stages are made again. A stage that is done again keeps the mesh.
 
     Parameters
     ----------
@@ -166,16 +171,21 @@ def solve_scene_in_stages(
         return _in_stages(cover, folder, again_from, resume, progress)
     path = folder / BEFORE
     before = earlier_result(coarser(scene), path)
-    made_from = io.read_result(path) if again_from is not None and path.exists() else before
     if before is None:
-        before = solve_scene(coarser(scene), progress=_part(progress, 0.0, _BEFORE))
-    if made_from is None:
-        made_from = before
-        io.write_result(before, path)
-    fine = _in_stages(
-        local_cover(scene, made_from), folder, again_from, resume, _part(progress, _BEFORE, 1.0)
-    )
-    return with_error(scene, fine, before)
+        before = _before(scene, SolverSettings(), _part(progress, 0.0, _BEFORE))
+    made_from = before
+    if again_from is not None and path.exists():
+        made_from = io.read_result(path)
+    elif not resume:
+        made_from = _sized(before, 1.0)
+    for show in _parts(progress, _MESHES):
+        io.write_result(made_from, path)
+        cover = local_cover(scene, made_from)
+        fine = with_error(scene, _in_stages(cover, folder, again_from, resume, show), before)
+        if again_from is not None or _done(scene, fine):
+            break
+        made_from = _stricter(scene, made_from, fine)
+    return fine
 
 
 def local_cover(scene: Scene, before: Solution) -> Cover:
@@ -184,7 +194,7 @@ def local_cover(scene: Scene, before: Solution) -> Cover:
     # Free edges are left out of every statement.
     inner = ~np.isin(cover.zone, [k for k, z in enumerate(cover.zone_names) if z == FREE_EDGE])
     w2 = np.where(inner, _w2(scene, before), 0.0)
-    sizes = needed_sizes(cover, w2, _sizing(scene), coarsest_size(scene))
+    sizes = needed_sizes(cover, w2, _share(before) * _sizing(scene), coarsest_size(scene))
     gradings = {}
     for panel, name in enumerate(cover.panel_names):
         own = np.unique(cover.faces[cover.panel == panel])
@@ -196,7 +206,8 @@ def with_error(scene: Scene, fine: Solution, coarse: Solution) -> Solution:
     """Measure the mesh error of a result by one on a coarser mesh, and keep it among its figures.
 
     A zone errs by the difference of its means, extrapolated. Where both meshes are alike, as they
-    are where little wrinkles, it errs by the estimate that sized them. The tolerance is set against
+    are where little wrinkles, it errs by the estimate that sized them. A mean that falls errs by no
+    more than itself, since W2 is nowhere below zero. The tolerance is set against
     the error over all zones but free edges: the root mean square of their errors over their means,
     or over 0.02 if that is more, weighted by area.
     """
@@ -211,7 +222,8 @@ def with_error(scene: Scene, fine: Solution, coarse: Solution) -> Solution:
         error = estimate[name] * row["w2_mean"]
         ratio = size_before.get(name, 0.0) / size[name]
         if ratio >= _APART:
-            error = abs(row["w2_mean"] - before[name]["w2_mean"]) / (ratio**_ORDER - 1.0)
+            rise = (row["w2_mean"] - before[name]["w2_mean"]) / (ratio**_ORDER - 1.0)
+            error = rise if rise >= 0.0 else min(-rise, row["w2_mean"])
         zones.append(ZoneMean(name, row["w2_mean"], error))
     inner = [zone for zone in zones if zone.zone != FREE_EDGE]
     area = np.array([rows[zone.zone].area for zone in inner])
@@ -258,6 +270,46 @@ def with_scatter(
         for row in own
     ]
     return with_companions(solution, zones, seeds)
+
+
+def _refined(scene: Scene, settings: SolverSettings, progress: Progress, meshes: int) -> Solution:
+    """Solve on so many meshes at most, after the coarser ones, until the tolerance is kept."""
+    last = before = _before(scene, settings, _part(progress, 0.0, _BEFORE))
+    for show in _parts(progress, meshes):
+        fine = _solved(local_cover(scene, before), last, settings, show)
+        last = _together(last, with_error(scene, fine, before))
+        if _done(scene, last):
+            break
+        before = _stricter(scene, before, last)
+    return last
+
+
+def _before(scene: Scene, settings: SolverSettings, progress: Progress) -> Solution:
+    """Solve on the coarser mesh, which need not keep the larger tolerance that it was made for."""
+    first = coarser(scene)
+    if first.tolerance is None:
+        return _solved(assemble(first), None, settings, progress)
+    return _refined(first, settings, progress, meshes=1)
+
+
+def _done(scene: Scene, solution: Solution) -> bool:
+    """Whether no finer mesh would help: the tolerance is kept, or the solver did not converge."""
+    return solution.status != "converged" or solution.figures[REACHED] <= _asked(scene)
+
+
+def _share(before: Solution) -> float:
+    """Share of the tolerance that the mesh made from a result is made for."""
+    return before.figures.get(SIZED, 1.0)
+
+
+def _sized(before: Solution, share: float) -> Solution:
+    return replace(before, figures=MappingProxyType({**before.figures, SIZED: share}))
+
+
+def _stricter(scene: Scene, before: Solution, missed: Solution) -> Solution:
+    """Have a finer mesh made, by as much as the last one missed the tolerance."""
+    share = max(_AIM * _asked(scene) / missed.figures[REACHED], _FINER)
+    return _sized(before, share * _share(before))
 
 
 def _solved(
@@ -309,6 +361,15 @@ def _part(progress: Progress, begin: float, end: float) -> Progress:
         progress(name, **figures)
 
     return show
+
+
+def _parts(progress: Progress, meshes: int) -> Iterator[Progress]:
+    """Progress of each mesh after the coarser ones: half of what is left, as more may follow."""
+    begin = _BEFORE
+    for left in reversed(range(meshes)):
+        end = 0.5 * (begin + 1.0) if left else 1.0
+        yield _part(progress, begin, end)
+        begin = end
 
 
 def _criteria(scene: Scene, solution: Solution) -> Criteria:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations_with_replacement
+
 import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
@@ -11,6 +13,7 @@ from seatlook.mesh.surface import FloatArray, IntArray
 BoolArray = npt.NDArray[np.bool_]
 
 _FLAT = 1e-9  # of a triangle's size; nearer to its plane than that is in it
+_BLOCK = 32768  # pairs that are looked at together, which bounds the memory
 _SIDES = ((0, 1), (1, 2), (2, 0))
 
 
@@ -43,14 +46,22 @@ def intersecting_pairs(
     """
     if len(faces) < 2:
         return np.zeros((0, 2), dtype=np.int64)
-    pairs = _near(points[faces])
+    pairs, same_place = _near(points[faces]), _Joined(joined, len(points))
+    blocks = np.split(pairs, range(_BLOCK, len(pairs), _BLOCK))
+    return np.concatenate([_intersecting(points, faces, block, same_place) for block in blocks])
+
+
+def _intersecting(
+    points: FloatArray, faces: IntArray, pairs: IntArray, joined: _Joined
+) -> IntArray:
+    """Those of the pairs (k, 2) of triangles that pass through each other."""
     first, second = points[faces[pairs[:, 0]]], points[faces[pairs[:, 1]]]
     below, above = _heights(first, second), _heights(second, first)
     flat = (below == 0.0).all(axis=1) & (above == 0.0).all(axis=1)
     chosen = np.flatnonzero(_straddles(below) & _straddles(above) | flat)
     pairs, flat = pairs[chosen], flat[chosen]
     first, second = first[chosen], second[chosen]
-    same = _Joined(joined, len(points)).corners(faces[pairs[:, 0]], faces[pairs[:, 1]])
+    same = joined.corners(faces[pairs[:, 0]], faces[pairs[:, 1]])
     first_shared, second_shared = np.asarray(same.any(axis=2)), np.asarray(same.any(axis=1))
     crossing = _crossed(first, second, above[chosen], first_shared)
     crossing |= _crossed(second, first, below[chosen], second_shared)
@@ -63,13 +74,34 @@ def _near(corners: FloatArray) -> IntArray:
     """Pairs (k, 2) of triangles (m, 3, 3) whose boxes overlap, in order."""
     centre = corners.mean(axis=1)
     reach = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
-    pairs = cKDTree(centre).query_pairs(2.0 * reach.max(), output_type="ndarray").astype(np.int64)
+    pairs = _within_reach(centre, reach)
     i, j = pairs.T
     pairs = pairs[((centre[i] - centre[j]) ** 2).sum(axis=1) < (reach[i] + reach[j]) ** 2]
     low, high = corners.min(axis=1), corners.max(axis=1)
     i, j = pairs.T
     pairs = pairs[((low[i] <= high[j]) & (low[j] <= high[i])).all(axis=1)]
     return np.asarray(pairs[np.lexsort(pairs.T[::-1])])
+
+
+def _within_reach(centre: FloatArray, reach: FloatArray) -> IntArray:
+    """Pairs (k, 2) of centres (m, 3) at most both their reaches (m,) apart, and some more.
+
+    They are sought among triangles of much the same size: beside one large triangle in a mesh of
+    small ones, its reach would make pairs of all of them.
+    """
+    size = np.floor(np.log2(np.maximum(reach, 1e-9 * reach.max(initial=1.0)))).astype(np.int64)
+    groups = [np.flatnonzero(size == each) for each in np.unique(size)]
+    trees = [cKDTree(centre[group]) for group in groups]
+    found = []
+    for a, b in combinations_with_replacement(range(len(groups)), 2):
+        radius = reach[groups[a]].max() + reach[groups[b]].max()
+        if a == b:
+            own = trees[a].query_pairs(radius, output_type="ndarray")
+            found.append(groups[a][own])
+        else:
+            near = trees[a].sparse_distance_matrix(trees[b], radius, output_type="coo_matrix")
+            found.append(np.column_stack([groups[a][near.row], groups[b][near.col]]))
+    return np.sort(np.concatenate(found).astype(np.int64), axis=1)
 
 
 def _heights(plane: FloatArray, corners: FloatArray) -> FloatArray:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
+from hashlib import blake2b
 from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 from scipy.sparse import csc_array
 
 from seatlook.errors import SolverError
@@ -14,7 +16,7 @@ from seatlook.model import FloatArray, IntArray
 from seatlook.solver.methods.multifrontal import Cholesky, Pattern
 
 _CACHE_SIZE = 6  # patterns: those of a process, while ties join one after the other
-_patterns: OrderedDict[tuple[bytes, bytes], tuple[Pattern, IntArray, IntArray]] = OrderedDict()
+_patterns: OrderedDict[bytes, tuple[Pattern, IntArray, IntArray]] = OrderedDict()
 _ROUNDING = 1e-12  # of the diagonal, that holds what nothing holds but rounding
 
 
@@ -87,7 +89,7 @@ class Factor:
 
 def _pattern(matrix: csc_array) -> tuple[Pattern, IntArray, IntArray]:
     """Order of elimination, of an earlier matrix if possible, entries needed, the diagonal's."""
-    key = matrix.indptr.tobytes(), matrix.indices.tobytes()
+    key = _digest(matrix.indptr, matrix.indices)
     if key not in _patterns:
         rows = matrix.indices.astype(np.int64)
         columns = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
@@ -99,6 +101,14 @@ def _pattern(matrix: csc_array) -> tuple[Pattern, IntArray, IntArray]:
             _patterns.popitem(last=False)
     _patterns.move_to_end(key)
     return _patterns[key]
+
+
+def _digest(*arrays: npt.NDArray[np.integer]) -> bytes:
+    """Stands for the arrays, which are half as large as the rest of what is kept of a pattern."""
+    digest = blake2b()
+    for array in arrays:
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.digest()
 
 
 class SplitFactor:

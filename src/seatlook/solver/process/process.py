@@ -162,6 +162,7 @@ class Process:
         np.multiply(self.v, _CARRIED_VELOCITY * self.dt, out=self.inertia.free)
         self.inertia.free += self.x
         if refactor or self._factor is None:
+            self._factor = None
             self._factor = self._preconditioner(Factor)
         limit = _STEP_TOLERANCE * self.force_scale()
         return self._descend(self._factor, limit, self.iterations)
@@ -181,6 +182,7 @@ class Process:
         self.lag()
         np.copyto(self.inertia.free, self.x)
         limit = max(_REST_TOLERANCE, 0.02 * record.residual) * self.force_scale()
+        self._factor = None  # two at a time would be most of the memory
         self._factor = self._preconditioner(self._split)
         record = self._descend(self._factor, limit, iterations)
         if self._evaluations > _BACKTRACKING * record.iterations:
