@@ -8,6 +8,7 @@ from seatlook import io
 from seatlook.assembly import assemble
 from seatlook.chain.assess import assess
 from seatlook.errors import InputError, SolverError
+from seatlook.improvement.candidate import frozen_names
 from seatlook.improvement.corrected import CORRECTIONS, PATTERN, SEAMS, write_corrected
 from seatlook.improvement.objective import Goal
 from seatlook.improvement.propose import propose
@@ -65,9 +66,7 @@ def test_a_hook_that_is_missing_is_named_first(scene):
 
 
 def test_frozen_seams_freeze_both_edges(scene, changes):
-    from seatlook.improvement.propose import _frozen
-
     name = changes.drawn.seams[0].name
-    frozen = _frozen(replace(scene, improve=Freedom(frozen=(name,))))
+    frozen = frozen_names(replace(scene, improve=Freedom(frozen=(name,))))
     seam = changes.drawn.seams[0]
     assert {name, seam.a, *seam.b} == frozen

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 
+from seatlook.errors import InputError
 from seatlook.improvement.outline import Outline, Side
-from seatlook.model import Cover, FloatArray
+from seatlook.model import Cover, FloatArray, Scene
+from seatlook.model.scene import Freedom
 
 Kind = Literal["offset", "length", "hook", "foam", "wire"]
 # [m] between points of an edge that may move each on its own, where it has no notches.
@@ -37,16 +39,46 @@ class Candidate:
     stretch: int = -1
 
 
-def candidates_of(
-    cover: Cover, outlines: Sequence[Outline], frozen: frozenset[str] = frozenset()
-) -> tuple[Candidate, ...]:
-    """List all that may be changed of a cover.
+def limits_of(freedom: Freedom) -> dict[Kind, float]:
+    """Largest amount [m] of every kind."""
+    return {
+        "offset": freedom.edge,
+        "length": freedom.length,
+        "hook": freedom.hook,
+        "wire": freedom.hook,
+        "foam": freedom.foam,
+    }
 
-    Parameters
-    ----------
-    frozen : names of edges, hooks and panels (of the foam below them) that stay as they are
+
+def frozen_names(scene: Scene) -> frozenset[str]:
+    """Names that stay, those of the edges of frozen seams among them."""
+    names = set(scene.improve.frozen)
+    sewn = [{seam.a, *seam.b} for seam in scene.pattern.seams if seam.name in names]
+    return frozenset(names.union(*sewn))
+
+
+def free_candidates(
+    scene: Scene, candidates: Sequence[Candidate], limits: Mapping[Kind, float]
+) -> tuple[Candidate, ...]:
+    """List candidates that are not frozen, neither by name nor by a limit of 0.
+
+    Raises
+    ------
+    InputError
+        None is left.
     """
-    return tuple(c for c in _all(cover, outlines) if c.name not in frozen)
+    frozen = frozen_names(scene)
+    free = tuple(c for c in candidates if c.name not in frozen and limits[c.kind] > 0.0)
+    if not free:
+        raise InputError.single(
+            "improve", got="all frozen", expected="something that may change", file=scene.path
+        )
+    return free
+
+
+def candidates_of(cover: Cover, outlines: Sequence[Outline]) -> tuple[Candidate, ...]:
+    """List all that can be changed of a cover."""
+    return tuple(_all(cover, outlines))
 
 
 def _all(cover: Cover, outlines: Sequence[Outline]) -> Iterator[Candidate]:

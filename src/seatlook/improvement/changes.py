@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Self
 
 import numpy as np
 
@@ -13,7 +15,7 @@ from seatlook.improvement.candidate import Candidate, share_of
 from seatlook.improvement.morph import Morph
 from seatlook.improvement.outline import Outline, drawn_outlines, mesh_outlines
 from seatlook.mesh.closest import closest_places
-from seatlook.model import Anchor, Cover, FloatArray, Foam, Panel, Pattern, Solution
+from seatlook.model import Anchor, Cover, FloatArray, Foam, Hook, Panel, Pattern, Scene, Solution
 
 Amounts = Mapping[Candidate, float]
 
@@ -36,6 +38,13 @@ class Changes:
         self._drawn = drawn_outlines(pattern)
         self._morph = Morph(self._cover, pattern, self.outlines)
         self._ways: dict[Candidate, FloatArray] = {}
+        self._made: Amounts = {}
+
+    def beyond(self, made: Amounts) -> Self:
+        """The same, where amounts come on top of what has been made."""
+        other = copy(self)
+        other._made = made
+        return other
 
     def way(self, candidate: Candidate) -> FloatArray:
         """How material points move in the plane for an amount of 1, (n, 2) [1]."""
@@ -54,7 +63,7 @@ class Changes:
         InvertedElementError
             The mesh cannot follow.
         """
-        way = np.zeros_like(self._cover.uv)
+        way, amounts = np.zeros_like(self._cover.uv), added(self._made, amounts)
         for candidate, amount in amounts.items():
             if candidate.kind in ("offset", "length"):
                 way += amount * self.way(candidate)
@@ -78,6 +87,7 @@ class Changes:
 
     def pattern(self, amounts: Amounts) -> Pattern:
         """Return the pattern with the same edges, notches and lines, changed."""
+        amounts = added(self._made, amounts)
         ways = {
             panel: np.zeros_like(self.drawn.panels[panel].outline)
             for panel in {c.panel for c in amounts if c.kind in ("offset", "length")}
@@ -94,6 +104,25 @@ class Changes:
             for number, panel in enumerate(self.drawn.panels)
         ]
         return replace(self.drawn, panels=tuple(panels))
+
+    def scene(self, scene: Scene, amounts: Amounts) -> Scene:
+        """Return a scene with the pattern, the hooks' wires and the foam changed, to be solved."""
+        pattern, amounts = self.pattern(amounts), added(self._made, amounts)
+        anchors = {anchor.name: anchor for anchor in self._cover.anchors}
+        depth = {c.name: v for c, v in amounts.items() if c.kind == "hook" and v != 0.0}
+        curves, hooks = dict(scene.foam.curves), list[Hook]()
+        for hook in scene.hooks:
+            if hook.name in depth:
+                # A curve of its own: another hook of this wire stays where it is.
+                name = f"{hook.wire}, {hook.name}"
+                way = depth[hook.name] * self.inward(anchors[hook.name])
+                curves[name] = scene.foam.curves[hook.wire] + way
+                hook = replace(hook, wire=name)
+            hooks.append(hook)
+        raised = self._raised(amounts)
+        vertices = scene.foam.vertices if raised is None else raised.vertices
+        foam = replace(scene.foam, vertices=vertices, curves=MappingProxyType(curves))
+        return replace(scene, pattern=pattern, hooks=tuple(hooks), foam=foam)
 
     def _redrawn(self, number: int, panel: Panel, way: FloatArray, inner: FloatArray) -> Panel:
         """A panel whose outline moves by ``way``; allowance and notches follow the sew line."""
@@ -162,6 +191,22 @@ class Changes:
             height[found] += amount * (places.weights[found] * lift).sum(axis=1)
         normal = mesh.vertex_normals(foam.vertices, foam.faces)
         return replace(foam, vertices=foam.vertices + height[:, None] * normal)
+
+
+def added(*parts: Amounts) -> dict[Candidate, float]:
+    """Sum amounts, candidate by candidate.
+
+    Examples
+    --------
+    >>> front = Candidate(kind="length", name="INSERT.FRONT")
+    >>> added({front: 0.002}, {front: 0.001})[front]
+    0.003
+    """
+    total: dict[Candidate, float] = {}
+    for part in parts:
+        for candidate, amount in part.items():
+            total[candidate] = total.get(candidate, 0.0) + amount
+    return total
 
 
 def outline_way(outline: Outline, candidate: Candidate) -> FloatArray:

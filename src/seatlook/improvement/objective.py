@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
-from seatlook.model import Cover, FloatArray, Solution
+from seatlook.chain.assess import Assessment
+from seatlook.model import Cover, FloatArray, Scene, Solution
 from seatlook.model.zones import FREE_EDGE
 from seatlook.solver.element.elastic import ElasticSheet
 from seatlook.solver.foam.distance import DistanceField, distance_field
@@ -15,6 +18,7 @@ from seatlook.solver.foam.distance import DistanceField, distance_field
 CLASS_WEIGHTS = {"A": 1.0, "B": 0.5, "C": 0.2}
 # Share of its unit by which a kink is rounded; of W2, and of strains and gaps in their own units.
 _ROUND = 0.05
+_TINY = 1e-12  # that nothing is divided by 0
 _SAME = 0.02  # of the threshold: principal curvatures so near are taken as one
 
 
@@ -76,6 +80,7 @@ class Objective:
     ) -> None:
         cover = solution.cover
         self.goal, self._threshold = goal, c_threshold
+        self._round, self._same = _ROUND, _SAME
         self._field = _field_of(cover)
         self._asked = _sheet_of(cover).recovered_curvatures(solution.positions) - net
         self._weight = weight * cover.rest_area / (weight * cover.rest_area).sum()
@@ -92,11 +97,19 @@ class Objective:
 
     def of(self, solution: Solution) -> Parts:
         """Evaluate it for a solved cover of the same mesh, on its own foam."""
-        own, self._field = self._field, _field_of(solution.cover)
-        try:
-            return self.parts(_sheet_of(solution.cover), solution.positions)
-        finally:
-            self._field = own
+        return self.over(solution.cover).parts(_sheet_of(solution.cover), solution.positions)
+
+    def over(self, cover: Cover) -> Self:
+        """The same on the foam of another cover of this mesh."""
+        other = copy(self)
+        other._field = _field_of(cover)
+        return other
+
+    def literal(self) -> Self:
+        """The same with sharp kinks: 0 where nothing is beyond its goal; it has no gradient."""
+        other = copy(self)
+        other._round = other._same = 0.0
+        return other
 
     def faces(self, sheet: ElasticSheet, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What every face adds by W2 and by strain, (m,) each."""
@@ -114,14 +127,14 @@ class Objective:
     def rise(self, x: FloatArray, height: FloatArray) -> float:
         """Derivative where the foam below the vertices rises by ``height`` (n,) [m]."""
         distance, _ = self._distances(x)
-        _, rate = _beyond((distance - self.goal.gap) / self.goal.gap_unit)
+        _, rate = self._beyond((distance - self.goal.gap) / self.goal.gap_unit)
         return -float((self._vertex_weight * rate / self.goal.gap_unit) @ height)
 
     def _wrinkles(self, recovered: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Mean of net W2 beyond its goal, and derivative by the curvature (m, 2, 2)."""
         net = (recovered - self._asked) / self._threshold[:, None, None]
-        least, slope = _least(net, _SAME)
-        value, rate = _beyond(-least - self.goal.w2)
+        least, slope = _least(net, self._same)
+        value, rate = self._beyond(-least - self.goal.w2)
         pull = (-self._weight * rate / self._threshold)[:, None, None] * slope
         return self._weight * value, pull
 
@@ -130,10 +143,10 @@ class Objective:
         tensor = np.stack([E[:, 0], 0.5 * E[:, 2], 0.5 * E[:, 2], E[:, 1]], axis=1)
         unit, (low, high) = self.goal.strain_unit, self.goal.strain
         scaled = tensor.reshape(-1, 2, 2) / unit
-        least, down = _least(scaled, _SAME)
-        most, up = _least(-scaled, _SAME)
-        slack, slack_rate = _beyond(low / unit - least)
-        torn, torn_rate = _beyond(-most - high / unit)
+        least, down = _least(scaled, self._same)
+        most, up = _least(-scaled, self._same)
+        slack, slack_rate = self._beyond(low / unit - least)
+        torn, torn_rate = self._beyond(-most - high / unit)
         slope = torn_rate[:, None, None] * up - slack_rate[:, None, None] * down
         slope *= (self._weight / unit)[:, None, None]
         pull = np.stack([slope[:, 0, 0], slope[:, 1, 1], slope[:, 0, 1]], axis=1)
@@ -142,9 +155,14 @@ class Objective:
     def _gaps(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What gaps beyond their goal add at every vertex, and the derivative by the positions."""
         gap, direction = self._distances(x)
-        value, rate = _beyond((gap - self.goal.gap) / self.goal.gap_unit)
+        value, rate = self._beyond((gap - self.goal.gap) / self.goal.gap_unit)
         pull = (self._vertex_weight * rate / self.goal.gap_unit)[:, None] * direction
         return self._vertex_weight * value, pull
+
+    def _beyond(self, value: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What is above 0, its kink rounded, and the slope of that."""
+        root = np.maximum(np.hypot(value, self._round), _TINY)
+        return 0.5 * (value + root), 0.5 * (1.0 + value / root)
 
     def _distances(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Gap (n,) [m] over the foam and its slope (n, 3); none where the foam is far."""
@@ -156,6 +174,18 @@ class Objective:
         return gap, np.where(near[:, None], direction, 0.0)
 
 
+def objective_of(scene: Scene, assessment: Assessment, goal: Goal) -> Objective:
+    """Set up the objective for a result, with the weights of its scene's boxes."""
+    classes = {box.name: str(box.visibility) for box in scene.boxes}
+    return Objective(
+        assessment.solution,
+        net=assessment.surface.net,
+        c_threshold=assessment.surface.c_threshold,
+        weight=weights(assessment.solution.cover, classes),
+        goal=goal,
+    )
+
+
 def _sheet_of(cover: Cover) -> ElasticSheet:
     fabrics = [material.fabric for material in cover.materials]
     return ElasticSheet(cover.rest, cover.faces, cover.panel, fabrics, hem=cover.hem)
@@ -165,18 +195,13 @@ def _field_of(cover: Cover) -> DistanceField | None:
     return None if cover.foam is None else distance_field(cover.foam.vertices, cover.foam.faces)
 
 
-def _beyond(value: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What is above 0, its kink rounded, and the slope of that."""
-    root = np.hypot(value, _ROUND)
-    return 0.5 * (value + root), 0.5 * (1.0 + value / root)
-
-
 def _least(tensor: FloatArray, same: float) -> tuple[FloatArray, FloatArray]:
     """Smaller eigenvalue (m,) of symmetric tensors, rounded where both meet; slope (m, 2, 2)."""
     a, b, c = tensor[:, 0, 0], tensor[:, 1, 1], 0.5 * (tensor[:, 0, 1] + tensor[:, 1, 0])
     half = 0.5 * (a - b)
     radius = np.sqrt(half**2 + c**2 + same**2)
-    lean, turn = 0.5 * half / radius, 0.5 * c / radius
+    size = np.maximum(radius, _TINY)
+    lean, turn = 0.5 * half / size, 0.5 * c / size
     slope = np.stack([0.5 - lean, -turn, -turn, 0.5 + lean], axis=1).reshape(-1, 2, 2)
     return 0.5 * (a + b) - radius, slope
 

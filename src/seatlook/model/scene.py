@@ -210,6 +210,7 @@ class Freedom:
         largest offset of an edge, change of its length, of a hook's depth, of the foam's height;
         0 freezes all of a kind
     symmetric : what mirrors each other moves together where both gain by it
+    corrections : most of them that are made; what moves together counts as one
     """
 
     frozen: tuple[str, ...] = ()
@@ -218,6 +219,7 @@ class Freedom:
     hook: float = 0.010
     foam: float = 0.010
     symmetric: bool = True
+    corrections: int = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

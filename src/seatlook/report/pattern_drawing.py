@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -15,13 +15,15 @@ from PIL import ImageDraw
 from seatlook.assembly.seam_guess import Proposal
 from seatlook.files import write_bytes, write_text
 from seatlook.mesh import arc_length
-from seatlook.model import FloatArray, Panel
+from seatlook.model import FloatArray, Panel, Pattern
 from seatlook.pbr.maps.labels import Colour, font, width_of
 from seatlook.pbr.picture import png
 
+CHANGES_SVG, CHANGES_PNG = "changes.svg", "changes.png"
 _WIDTH = 1600  # px of the sheet
 _EDGE, _GAP = 28, 44  # px around it, and between panels
 _LARGEST = 420  # px of the longest panel
+_CHANGED = 700  # px of the longest panel that is drawn old and new
 _MARGIN = 26  # px round a panel, for the numbers of its edges
 _NAME, _TEXT, _NUMBER = 17, 14, 13  # px, size of letters
 _ROW = 20  # px of a line of a panel's list
@@ -96,6 +98,64 @@ def draw_pattern(proposal: Proposal, folder: Path) -> tuple[Path, Path]:
     write_text(paths[0], _svg(marks, height))
     write_bytes(paths[1], png(_pixels(marks, height)))
     return paths
+
+
+def draw_changes(
+    before: Pattern, after: Pattern, words: Mapping[str, Sequence[str]], folder: Path
+) -> tuple[Path, Path]:
+    """Draw the panels that changed, old in grey and new in blue, into ``changes.svg`` and ``.png``.
+
+    Parameters
+    ----------
+    before, after : the same panels and edges
+    words : panel -> what was done to it, a line each
+    """
+    pairs = [
+        (old, new)
+        for old, new in zip(before.panels, after.panels, strict=True)
+        if not np.array_equal(old.outline, new.outline) or old.name in words
+    ]
+    sizes = [float(np.ptp(panel.outline, axis=0).max()) for pair in pairs for panel in pair]
+    scale = _CHANGED / max(sizes, default=1.0)
+    marks, height = _laid_out(
+        [_changed(*pair, words.get(pair[0].name, ()), scale) for pair in pairs]
+    )
+    paths = folder / CHANGES_SVG, folder / CHANGES_PNG
+    write_text(paths[0], _svg(marks, height))
+    write_bytes(paths[1], png(_pixels(marks, height)))
+    return paths
+
+
+def _changed(old: Panel, new: Panel, words: Sequence[str], scale: float) -> _Cell:
+    """One panel as it was and as it is now, to one scale, with what was done below."""
+    both = np.vstack([old.outline, new.outline])
+    low, high = both.min(axis=0), both.max(axis=0)
+    top = _NAME + 14.0
+
+    def place(points: FloatArray) -> FloatArray:
+        moved = (points - [low[0], high[1]]) * [scale, -scale]
+        return np.asarray(moved + np.array([_MARGIN, top + _MARGIN]))
+
+    closed = [place(np.vstack([p.outline, p.outline[:1]])) for p in (old, new)]
+    size = (high - low) * scale
+    marks: list[_Mark] = [
+        _Text((0.0, 0.0), f"{new.name}: old grey, new blue", _NAME, _INK, bold=True),
+        _Line(closed[1], _CLOTH, 0.0, _CLOTH),
+        _Line(closed[0], _FREE, 1.5),
+        _Line(closed[1], _SEAMS[0], 1.5),
+        *_grain(new, closed[1], size),
+        *_notches(new, place),
+    ]
+    below = top + 2 * _MARGIN + float(size[1]) + 6.0
+    marks += [_Text((0.0, below + _ROW * k), w, _TEXT, _INK) for k, w in enumerate(words)]
+    widest = max(
+        width_of(f"{new.name}: old grey, new blue", _NAME, bold=True), 2 * _MARGIN + size[0]
+    )
+    return _Cell(
+        marks=marks,
+        width=max(float(widest), *(width_of(w, _TEXT) for w in words), 0.0),
+        height=below + _ROW * len(words),
+    )
 
 
 class _Sheet:

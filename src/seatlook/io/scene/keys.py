@@ -188,6 +188,7 @@ KEYS: dict[str, Kind] = {
             "hook_mm": Number(low=0, high=50, scale=MM, default=10.0),
             "foam_mm": Number(low=0, high=50, scale=MM, default=10.0),
             "symmetric": Flag(default=True),
+            "corrections": Integer(low=1, high=20, default=3),
         }
     ),
     "wrinkle": Table(

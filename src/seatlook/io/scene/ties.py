@@ -261,4 +261,5 @@ def make_freedom(
         hook=own["hook_mm"],
         foam=own["foam_mm"],
         symmetric=own["symmetric"],
+        corrections=own["corrections"],
     )
