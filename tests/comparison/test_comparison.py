@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -105,6 +106,27 @@ def test_the_page_says_first_what_differs(comparison, tmp_path):
     assert "texture suede: " not in differences
     assert len(list(tmp_path.glob("variants/*/*/*.png"))) == 8
     assert len(list(tmp_path.glob("maps/*/*.png"))) == 2 * len(INDICES)
+
+
+def test_the_page_holds_every_variant_to_be_turned(comparison, folder, tmp_path):
+    def content(out):
+        page = write_comparison(comparison, out).read_text(encoding="utf-8")
+        (text,) = re.findall(r'<script type="application/json" id="viewer-content">(.*?)<', page)
+        return json.loads(text)
+
+    first = content(folder / "kept")
+    (other,) = first["others"]
+    assert (first["name"], other["name"]) == ("pvc", "suede cover")
+    assert other["files"] == ["scene.toml", "kept/suede-cover/result.npz"]
+    # Tables and lights are those of the page; of another variant there is what is its own.
+    assert "albedos" in first["buffers"]["places"]
+    assert "albedos" not in other["buffers"]["places"]
+    assert "rigs" not in other
+    assert [(m["low"], m["high"]) for m in first["maps"]] == [
+        (m["low"], m["high"]) for m in other["maps"]
+    ]
+    # Results that are not in the folder are named in no command.
+    assert content(tmp_path)["files"] == []
 
 
 def test_names_that_make_one_file_name_get_two_folders(comparison, tmp_path):

@@ -11,6 +11,7 @@ from typing import TypeVar
 from seatlook import files
 from seatlook._version import __version__
 from seatlook.chain.draw import map_ends
+from seatlook.chain.files import RESULT
 from seatlook.comparison.changes import (
     Change,
     better,
@@ -34,6 +35,7 @@ from seatlook.report.sections.parameters import parameter_tables, parameter_toml
 from seatlook.report.sections.rigs import rig_head
 from seatlook.report.sections.words import counted, listed
 from seatlook.report.sections.wrinkles import section_of
+from seatlook.report.viewer.section import variants_section
 from seatlook.wrinkle import INDICES
 
 _TABLES = {
@@ -98,6 +100,12 @@ def write_comparison(
         status=", ".join(f"{n} {v.resolution.status}" for n, v in comparison.variants.items()),
         checks=tuple(_checks(comparison)),
         warnings=tuple(_warnings(comparison, scores)),
+        viewer=variants_section(
+            comparison.variants,
+            comparison.camera,
+            results=_results(comparison, folder),
+            top=comparison.top,
+        ),
     )
     return write_page(data, folder, single_file=single_file)
 
@@ -122,6 +130,12 @@ def _again(comparison: Comparison, folder: Path) -> str:
         return ""
     names = " ".join(f"{path.parent.name}/{path.name}" for path in paths if path)
     return f"seatlook compare {names} --out {folder.resolve().name} --single-file"
+
+
+def _results(comparison: Comparison, folder: Path) -> dict[str, Path]:
+    """Where the result of every variant is, if it is kept in the folder."""
+    names = file_names(comparison.variants)
+    return {name: folder / names[name] / RESULT for name in comparison.variants}
 
 
 def _row(variant: str, texture: str) -> str:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import base64
 import importlib
 import shlex
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -27,10 +25,9 @@ from seatlook.report.viewer_page import viewer_page
 from support.browsers import FLAGS
 from support.commands import seatlook as command
 from support.pages import page_data, write_png
+from support.viewing import STILL, differs, listen, open_viewer, pixels, put, said, settle
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(600)]
-
-STILL = "#viewer-room[data-still]"
 
 
 @pytest.fixture(scope="module")
@@ -64,45 +61,6 @@ def page(browser: Any, address: str) -> Iterator[Any]:
     yield page
     context.close()
     assert messages == []
-
-
-def listen(page: Any, messages: list[str]) -> None:
-    # Chromium says that waiting for a picture is slow; it is meant to wait.
-    page.on("console", lambda m: None if "GPU stall" in m.text else messages.append(m.text))
-    page.on("pageerror", lambda error: messages.append(str(error)))
-    page.on(
-        "request",
-        lambda r: None if r.url.startswith(("file:", "data:", "blob:")) else messages.append(r.url),
-    )
-
-
-def open_viewer(page: Any) -> None:
-    page.locator("#viewer-open").click()
-    settle(page)
-
-
-def settle(page: Any) -> None:
-    page.wait_for_timeout(200)
-    page.locator(STILL).wait_for(timeout=90_000)
-
-
-def pixels(page: Any) -> np.ndarray:
-    """What the viewer shows, (h, w, 3)."""
-    data = page.evaluate("() => document.getElementById('viewer-canvas').toDataURL('image/png')")
-    content = base64.b64decode(data.split(",")[1])
-    return np.asarray(Pillow.open(BytesIO(content)).convert("RGB")).astype(float)
-
-
-def differs(before: np.ndarray, after: np.ndarray) -> bool:
-    return float(np.abs(before - after).mean()) > 0.5
-
-
-def said(page: Any, name: str) -> str:
-    return page.locator(f"#viewer-{name}").text_content()
-
-
-def put(page: Any, name: str, value: str) -> None:
-    page.locator(f"#viewer-{name}").fill(value)
 
 
 def test_nothing_is_drawn_before_it_is_asked_for(page):

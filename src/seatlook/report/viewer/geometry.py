@@ -135,26 +135,31 @@ def add_geometry(stage: Studio, buffers: Buffers) -> tuple[Triangles, dict[str, 
 
 
 def add_maps(
-    assessment: Assessment, stage: Studio, triangles: Triangles, buffers: Buffers
+    assessment: Assessment, stage: Studio, triangles: Triangles, buffers: Buffers, top: float
 ) -> list[dict[str, Any]]:
     """Add each map face by face, and smooth at the vertices; return what is said of them.
 
-    With the strain of the mid surface [%] along and across the grain, face by face.
+    ``top`` is the upper end of the range of W2. With the strain of the mid surface [%] along and
+    across the grain, face by face.
     """
     out = []
     for name in _MAPS:
         index = INDICES[name]
         values = assessment.values(name)
-        ends = map_ends(index, values, assessment.top)
+        ends = map_ends(index, values, top)
         said = {"name": index.symbol, "unit": index.unit, "meaning": index.meaning}
         out.append(_map(stage, triangles, values, ends, buffers, said))
     gap = {"name": "Gap", "unit": "mm", "meaning": "from the drawn foam to the cover"}
     out.append(_map(stage, triangles, 1e3 * assessment.gap, (-5.0, 5.0), buffers, gap))
     strain = stage.solution.strain_mid[triangles.coarse]
     buffers.add("strain", 100 * np.stack([strain[:, 0, 0], strain[:, 1, 1]], 1).astype(np.float32))
+    return out
+
+
+def add_colours(buffers: Buffers) -> None:
+    """Add the colours of the maps, as their square roots."""
     for colours in ("viridis", "diverging"):
         buffers.add(colours, np.rint(255 * np.sqrt(colour_table(colours))).astype(np.uint8))
-    return out
 
 
 def _map(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -21,8 +22,8 @@ _LEVEL, _WEAVE_CELLS = 1, 2
 _STRETCHED = 1e-5  # to which the table of anisotropy is rounded
 
 
-def add_looks(scene: Scene, stage: Studio, buffers: Buffers) -> dict[str, Any]:
-    """Add tables and reliefs; return materials, looks (a material per part) and thread.
+def looks_of(scene: Scene, stage: Studio) -> tuple[list[np.ndarray], dict[str, Any]]:
+    """Return packed materials; and these, looks (a material per part) and thread, by names.
 
     ``measured`` names the looks with measured maps, of which the viewer shows the mean.
     """
@@ -33,14 +34,23 @@ def add_looks(scene: Scene, stage: Studio, buffers: Buffers) -> dict[str, Any]:
         looks.append({"name": name, "materials": [_row(record, records) for record in packed]})
         if (packed["maps"] >= 0).any():
             measured.append(name)
-    add_tables(buffers, stretched=any(record["anisotropy"] != 0 for record in records))
-    used = sorted({int(record["texture"]) for record in records} - {-1})
-    return {
+    return records, {
         "materials": [record_of(record) for record in records],
         "looks": looks,
-        "reliefs": {RELIEFS[which]: _relief(which, buffers) for which in used},
         "thread": _thread(stage.thread),
         "measured": measured,
+    }
+
+
+def add_details(records: Iterable[np.ndarray], buffers: Buffers) -> dict[str, Any]:
+    """Add the tables and reliefs that packed materials need; return how they are coded."""
+    kept = list(records)
+    stretched = any(record["anisotropy"] != 0 for record in kept)
+    add_tables(buffers, stretched=stretched)
+    used = sorted({int(record["texture"]) for record in kept} - {-1})
+    return {
+        "stretched": stretched,
+        "reliefs": {RELIEFS[which]: _relief(which, buffers) for which in used},
     }
 
 

@@ -1,9 +1,10 @@
-"""From an evaluation to the viewer of its page: script and content as two texts."""
+"""From cases to the viewer of their page: script and content as two texts."""
 
 from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,15 +12,15 @@ import numpy as np
 
 from seatlook.chain.case import Case
 from seatlook.chain.files import RESULT
-from seatlook.model import VIEWS, Camera, Light, Rig
+from seatlook.model import VIEWS, Camera, Light, Rig, Scene
 from seatlook.model.light.lamps import ILLUMINANTS, linear_srgb, planck_colour
 from seatlook.pbr.light.exposure import ev100
 from seatlook.pbr.light.rig import SEAT, lux_at_seat, patched, sky_irradiance, white_of
 from seatlook.pbr.shading.studio import Studio, studio
 from seatlook.report.page.types import ViewerSection
 from seatlook.report.sections.words import light_words, look_words
-from seatlook.report.viewer.geometry import add_geometry, add_maps
-from seatlook.report.viewer.looks import add_looks
+from seatlook.report.viewer.geometry import add_colours, add_geometry, add_maps
+from seatlook.report.viewer.looks import add_details, looks_of
 from seatlook.report.viewer.pack import Buffers
 from seatlook.report.viewer.script import joined
 
@@ -32,23 +33,65 @@ def viewer_section(case: Case, camera: Camera, folder: Path | None = None) -> Vi
 
     ``folder`` is where the case's result is kept; None where that is not known.
     """
-    stage = studio(case.solution)
-    buffers = Buffers()
-    triangles, geometry = add_geometry(stage, buffers)
+    result = None if folder is None else folder / RESULT
+    return variants_section({"": case}, camera, results={"": result}, top=case.assessment.top)
+
+
+def variants_section(
+    variants: Mapping[str, Case], camera: Camera, *, results: Mapping[str, Path | None], top: float
+) -> ViewerSection:
+    """Everything the viewer shows of some cases: lights and looks are those of the first.
+
+    Parameters
+    ----------
+    variants : by their names
+    results : where the result of each is kept; None where that is not known
+    top : upper end of the range of W2
+
+    Notes
+    -----
+    The content is that of the first, with what all share; ``others`` have what is their own.
+    """
+    first = next(iter(variants.values()))
+    records: list[np.ndarray] = []
+    seats, packs = [], []
+    for name, case in variants.items():
+        buffers = Buffers()
+        own = _seat(case, first.scene, buffers, records, top)
+        seats.append({"name": name, **own, "files": _files(first.scene, results[name])})
+        packs.append(buffers)
+    add_colours(packs[0])
     content = {
+        **seats[0],
+        **add_details(records, packs[0]),
+        "rigs": [_rig(rig) for rig in first.scene.rigs],
+        "views": _views(first, camera),
+        "seat": list(SEAT),
+        "buffers": packs[0].packed(),
+        "others": [
+            {**seat, "buffers": pack.packed()}
+            for seat, pack in zip(seats[1:], packs[1:], strict=True)
+        ],
+    }
+    return ViewerSection(script=joined(), content=json.dumps(content, separators=(",", ":")))
+
+
+def _seat(
+    case: Case, scene: Scene, buffers: Buffers, records: list[np.ndarray], top: float
+) -> dict[str, Any]:
+    """Add what is a case's own in the looks of ``scene``, and its packed materials."""
+    stage = studio(case.solution)
+    triangles, geometry = add_geometry(stage, buffers)
+    packed, looks = looks_of(scene, stage)
+    records.extend(packed)
+    looks["looks"] = [{**look, "words": look_words(look["name"])} for look in looks["looks"]]
+    return {
         **geometry,
-        **add_looks(case.scene, stage, buffers),
-        "maps": add_maps(case.assessment, stage, triangles, buffers),
-        "rigs": [_rig(rig) for rig in case.scene.rigs],
-        "views": _views(case, camera),
+        **looks,
+        "maps": add_maps(case.assessment, stage, triangles, buffers, top),
         "wrinkles": _wrinkles(case, stage),
         "seams": _seams(case, buffers),
-        "seat": list(SEAT),
-        "files": _files(case, folder),
     }
-    content["looks"] = [{**look, "words": look_words(look["name"])} for look in content["looks"]]
-    content["buffers"] = buffers.packed()
-    return ViewerSection(script=joined(), content=json.dumps(content, separators=(",", ":")))
 
 
 def _rig(rig: Rig) -> dict[str, Any]:
@@ -69,15 +112,14 @@ def _rig(rig: Rig) -> dict[str, Any]:
     }
 
 
-def _files(case: Case, folder: Path | None) -> list[str]:
+def _files(scene: Scene, result: Path | None) -> list[str]:
     """Scene and result as seen from the scene's folder, for a command; none where not known."""
-    path = case.scene.path
-    if path is None or folder is None:
+    if scene.path is None or result is None or not result.is_file():
         return []
-    home, kept = path.resolve().parent, folder.resolve()
+    home, kept = scene.path.resolve().parent, result.resolve()
     if home.anchor != kept.anchor:
         return []
-    return [path.name, Path(os.path.relpath(kept / RESULT, home)).as_posix()]
+    return [scene.path.name, Path(os.path.relpath(kept, home)).as_posix()]
 
 
 def _light(light: Light) -> dict[str, Any]:

@@ -18,26 +18,31 @@ export class Controls {
    * @param {Scene} scene
    * @param {number[]} middle of the seat
    * @param {{moved: () => void, look: () => void, photo: (file: File) => void, resized: () => void,
-   *   fly: (wrinkle: number) => void}} tell
+   *   fly: (wrinkle: number) => void, seat: (number: number) => void}} tell
+   * @param {Partial<import("./drawing/payload.js").Content>[]} others seats beside the first
    */
-  constructor(scene, middle, tell) {
+  constructor(scene, middle, tell, others) {
     this.scene = scene;
     this.middle = middle;
     this.tell = tell;
-    this.populate();
+    this.populate(others);
     this.lightControls();
     this.materialControls();
     this.dial();
     this.show();
   }
 
-  populate() {
+  /** @param {Partial<import("./drawing/payload.js").Content>[]} others */
+  populate(others) {
     const { content } = this.scene;
     offer(select("rig"), content.rigs.map(({ name }, value) => ({ value, text: name })));
     offer(select("look"), content.looks.map(({ words }, value) => ({ value, text: words })));
     offer(select("layer"), content.maps.map(({ name }, value) => ({ value, text: name })));
-    offer(select("wrinkle"), content.wrinkles.map(({ label }, value) => ({ value, text: label })));
-    box("wrinkle-label").hidden = content.wrinkles.length === 0;
+    const names = [content.name, ...others.map(({ name }) => name ?? "")];
+    offer(select("seat"), names.map((text, value) => ({ value, text })));
+    box("seat-label").hidden = others.length === 0;
+    select("seat").addEventListener("change", () => this.tell.seat(Number(select("seat").value)));
+    this.offerWrinkles();
     for (const view of content.views) {
       const button = document.createElement("button");
       button.type = "button";
@@ -55,6 +60,14 @@ export class Controls {
     select("wrinkle").addEventListener("change", () => {
       if (select("wrinkle").value !== "") this.tell.fly(Number(select("wrinkle").value));
     });
+  }
+
+  /** Those of the seat that is shown. */
+  offerWrinkles() {
+    const { wrinkles } = this.scene.content;
+    select("wrinkle").length = 1;
+    offer(select("wrinkle"), wrinkles.map(({ label }, value) => ({ value, text: label })));
+    box("wrinkle-label").hidden = wrinkles.length === 0;
   }
 
   lightControls() {
@@ -150,6 +163,7 @@ export class Controls {
 
   /** Say in every control what is shown. */
   show() {
+    select("seat").value = String(this.scene.seatNumber);
     this.showLight();
     this.showMaterial();
     this.showLayer();

@@ -5,7 +5,8 @@ import { Knowledge } from "./here.js";
 import { Pointer } from "./pointer.js";
 import { Renderer } from "./drawing/renderer.js";
 import { Scene } from "./scene.js";
-import { arraysOf } from "./drawing/payload.js";
+import { Mesh } from "./drawing/mesh.js";
+import { arraysOf, seatOf } from "./drawing/payload.js";
 import { commandOf } from "./command.js";
 import { box, button, element, handOut, input, say } from "./page.js";
 import { pageOf, sentChoice } from "./send.js";
@@ -14,38 +15,44 @@ import { photoTexture } from "./drawing/materials.js";
 
 /** @typedef {import("./drawing/renderer.js").Shown} Shown */
 /** @typedef {import("./drawing/payload.js").Content} Content */
+/** @typedef {import("./drawing/payload.js").Page} Page */
 /** @typedef {import("./drawing/payload.js").Numbers} Numbers */
 
 const STILL = 150;  // ms without a change after which a fine picture is begun
 
 class Viewer {
   /**
-   * @param {Content} content
+   * @param {Page} page
    * @param {(name: string) => Numbers} array
    * @param {string} room the section as it was
    */
-  constructor(content, array, room) {
-    this.content = content;
+  constructor(page, array, room) {
+    this.page = page;
     this.array = array;
     this.room = room;
     this.canvas = element("canvas", HTMLCanvasElement);
     this.fit();
-    this.renderer = new Renderer(this.canvas, content, array);
-    this.scene = new Scene(content);
+    this.renderer = new Renderer(this.canvas, page, array);
+    this.scene = new Scene(page);
     /** @type {{data: string, picture: ImageBitmap, texture: WebGLTexture} | null} */
     this.photo = null;
-    this.knowledge = new Knowledge(content, array);
+    this.knowledge = new Knowledge(page, array);
+    /** @type {{content: Content, mesh: Mesh, knowledge: Knowledge}[]} */
+    this.seats = [{ content: page, mesh: this.renderer.mesh, knowledge: this.knowledge }];
     this.bars = ["viridis", "diverging"].map(array);
-    const { middle } = this.renderer.mesh;
-    this.controls = new Controls(this.scene, middle, {
+    // Lights stay where they are when another seat is shown.
+    this.middle = this.renderer.mesh.middle;
+    this.controls = new Controls(this.scene, this.middle, {
       moved: () => this.moved(), look: () => this.relook(), photo: (file) => void this.takePhoto(file),
       resized: () => this.moved(), fly: (wrinkle) => this.fly(wrinkle),
-    });
+      seat: (number) => void this.change(number),
+    }, page.others);
     this.pointer = new Pointer(this.canvas, this.scene.camera, () => this.moved(), (x, y) => this.pick(x, y));
     this.stir = 0;
     this.asked = 0;
     this.coarse = false;
     this.listen();
+    this.showSeat();
     this.renderer.refill(this.shown());
   }
 
@@ -53,9 +60,8 @@ class Viewer {
     button("reset").addEventListener("click", () => this.reset());
     button("save").addEventListener("click", () => void this.save());
     button("toml").addEventListener("click", () => {
-      void this.copy(this.scene.toml(this.renderer.mesh.middle), "");
+      void this.copy(this.scene.toml(this.middle), "");
     });
-    button("command").hidden = this.content.files.length === 0;
     button("command").addEventListener("click", () => void this.copyCommand());
     button("send").addEventListener("click", () => this.send());
     new ResizeObserver(() => {
@@ -91,8 +97,7 @@ class Viewer {
 
   /** @returns {Shown} */
   shown() {
-    const { scene, photo } = this;
-    const { middle } = this.renderer.mesh;
+    const { scene, photo, middle } = this;
     const { materials, look } = scene.materials();
     const width = Number(input("photo-size").value) / 1e3;
     return {
@@ -104,11 +109,42 @@ class Viewer {
     };
   }
 
+  /**
+   * Show another seat of the page, from the same place and in the same light.
+   * @param {number} number
+   */
+  async change(number) {
+    this.scene.seatNumber = number;
+    delete box("room").dataset.still;
+    if (!this.seats[number]) {
+      const { content, array } = await seatOf(this.page, this.array, number);
+      const mesh = new Mesh(this.renderer.gl, content, array);
+      this.seats[number] = { content, mesh, knowledge: new Knowledge(content, array) };
+    }
+    // Another one may have been chosen while this one was made ready.
+    if (this.scene.seatNumber !== number) return;
+    const { content, mesh, knowledge } = this.seats[number];
+    this.renderer.put(content, mesh);
+    this.knowledge = knowledge;
+    this.scene.content = content;
+    box("here").textContent = "";
+    this.showSeat();
+    this.relook();
+  }
+
+  /** What differs from seat to seat in the controls. */
+  showSeat() {
+    button("command").hidden = this.scene.content.files.length === 0;
+    this.controls.offerWrinkles();
+    this.controls.show();
+  }
+
   /** Something has changed: draw it coarsely now, and finely once all is still. */
   moved() {
     this.stir = performance.now();
+    delete box("room").dataset.still;
     this.renderer.restart();
-    if (this.scene.layer >= 0) drawBar(this.bars[this.content.maps[this.scene.layer].low < 0 ? 1 : 0]);
+    if (this.scene.layer >= 0) drawBar(this.bars[this.scene.content.maps[this.scene.layer].low < 0 ? 1 : 0]);
     this.coarse = true;
     this.ask();
   }
@@ -134,9 +170,7 @@ class Viewer {
       this.ask();
     } else {
       box("room").dataset.still = "yes";
-      return;
     }
-    delete box("room").dataset.still;
   }
 
   /** @param {number} x @param {number} y */
@@ -149,7 +183,7 @@ class Viewer {
 
   /** @param {number} number */
   fly(number) {
-    const wrinkle = this.content.wrinkles[number];
+    const wrinkle = this.scene.content.wrinkles[number];
     this.scene.camera.flyTo(wrinkle.position, wrinkle.normal, wrinkle.length);
     box("here").textContent = `Wrinkle ${wrinkle.label}; mostly by ${wrinkle.cause}.`;
     this.moved();
@@ -196,7 +230,7 @@ class Viewer {
 
   async copyCommand() {
     const own = this.scene.own || this.photo !== null;
-    await this.copy(commandOf(this.scene), ` Run it in the folder of the scene.${
+    await this.copy(commandOf(this.scene), ` Run it in the folder of ${this.scene.content.files[0]}.${
       own ? " It takes light and material as they were: \"Copy as TOML\" has yours." : ""}`);
   }
 
@@ -232,6 +266,7 @@ class Viewer {
   /** @param {import("./scene.js").Choice} choice */
   async choose(choice) {
     this.scene.choose(choice);
+    await this.change(choice.seat);
     if (choice.photo) {
       input("photo-size").value = String(choice.photo.width);
       this.lay(await photoOf(choice.photo.data), choice.photo.data);
@@ -254,9 +289,9 @@ async function open(room) {
   button("open").disabled = true;
   box("room").hidden = false;
   try {
-    /** @type {Content} */
-    const content = JSON.parse(text);
-    const viewer = new Viewer(content, await arraysOf(content.buffers), room);
+    /** @type {Page} */
+    const page = JSON.parse(text);
+    const viewer = new Viewer(page, await arraysOf(page.buffers), room);
     const choice = sentChoice();
     if (choice) await viewer.choose(choice);
     box("offer").hidden = true;

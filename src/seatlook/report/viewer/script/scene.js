@@ -8,7 +8,7 @@ import { luxAt, moved, placeOf } from "./drawing/lights.js";
 /** @typedef {import("./drawing/payload.js").Material} Material */
 /** @typedef {{azimuth: number, elevation: number, distance: number}} LightPlace */
 /** @typedef {{albedo?: number[], roughness?: number, nap?: number}} Changes */
-/** @typedef {{rig: number, place: LightPlace | null, power: number, follow: boolean, look: number,
+/** @typedef {{seat: number, rig: number, place: LightPlace | null, power: number, follow: boolean, look: number,
  *   changes: Changes, layer: number, camera: import("./drawing/camera.js").State,
  *   photo: {data: string, width: number} | null}} Choice */
 
@@ -18,6 +18,7 @@ export class Scene {
   constructor(content) {
     this.content = content;
     this.camera = new Camera(content.views[0]);
+    this.seatNumber = 0;
     this.rigNumber = 0;
     this.lookNumber = 0;
     /** @type {LightPlace | null} */
@@ -105,7 +106,7 @@ export class Scene {
   /** @returns {Omit<Choice, "photo">} */
   choice() {
     return {
-      rig: this.rigNumber, place: this.place, power: this.power, follow: this.follow, look: this.lookNumber,
+      seat: this.seatNumber, rig: this.rigNumber, place: this.place, power: this.power, follow: this.follow, look: this.lookNumber,
       changes: this.changes, layer: this.layer, camera: { ...this.camera.state },
     };
   }

@@ -22,8 +22,9 @@
  *   parts: Part[], materials: Material[], looks: {name: string, words: string,
  *   materials: number[]}[], reliefs: Record<string, Relief>, thread: Record<string, any>,
  *   measured: string[], maps: Layer[], rigs: Rig[], views: View[], wrinkles: Wrinkle[],
- *   seams: string[], seat: number[], files: string[],
- *   buffers: {places: Record<string, Place>, content: string}}} Content */
+ *   seams: string[], seat: number[], files: string[], name: string, stretched: boolean,
+ *   buffers: {places: Record<string, Place>, content: string}}} Content the first seat, and what all share */
+/** @typedef {Content & {others: Partial<Content>[]}} Page */
 /** @typedef {Int8Array | Uint8Array | Int16Array | Int32Array | Uint16Array
  *   | Uint32Array | Float32Array} Numbers */
 
@@ -69,4 +70,17 @@ export async function arraysOf(buffers) {
     }
     return out;
   };
+}
+
+/**
+ * One of the seats of the page: its content, with what all share, and its arrays.
+ * @param {Page} page
+ * @param {(name: string) => Numbers} shared arrays of the first
+ * @param {number} number
+ * @returns {Promise<{content: Content, array: (name: string) => Numbers}>}
+ */
+export async function seatOf(page, shared, number) {
+  const other = page.others[number - 1];
+  if (!other?.buffers) return { content: page, array: shared };
+  return { content: { ...page, ...other }, array: await arraysOf(other.buffers) };
 }

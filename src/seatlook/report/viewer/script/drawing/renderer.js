@@ -35,7 +35,7 @@ export class Renderer {
     this.gl = gl;
     this.content = content;
     this.mesh = new Mesh(gl, content, array);
-    this.table = new MaterialTable(gl, tablesOf(gl, array, content.materials.some((m) => m.anisotropy !== 0)));
+    this.table = new MaterialTable(gl, tablesOf(gl, array, content.stretched));
     this.reliefs = reliefsOf(gl, content, array);
     this.programs = {
       overlay: programOf(gl, VERTEX, OVERLAY),
@@ -100,6 +100,17 @@ export class Renderer {
   /** Begin a picture anew. */
   restart() {
     this.done = 0;
+  }
+
+  /**
+   * Draw another seat of the page from now on.
+   * @param {Content} content
+   * @param {Mesh} mesh
+   */
+  put(content, mesh) {
+    this.content = content;
+    this.mesh = mesh;
+    this.shadowKey = "";
   }
 
   /** Materials have changed. @param {Shown} shown */
