@@ -12,6 +12,7 @@ from seatlook.improvement.candidate import frozen_names
 from seatlook.improvement.corrected import CORRECTIONS, PATTERN, SEAMS, write_corrected
 from seatlook.improvement.objective import Goal
 from seatlook.improvement.propose import propose
+from seatlook.improvement.ways import free_of
 from seatlook.model.scene import Freedom
 from seatlook.solver import solve
 
@@ -70,3 +71,19 @@ def test_frozen_seams_freeze_both_edges(scene, changes):
     frozen = frozen_names(replace(scene, improve=Freedom(frozen=(name,))))
     seam = changes.drawn.seams[0]
     assert {name, seam.a, *seam.b} == frozen
+
+
+def test_a_frozen_edge_is_not_moved_by_its_corners(scene, changes):
+    frozen = replace(scene, improve=Freedom(frozen=(LINE,)))
+    free = free_of(frozen, changes)
+    assert free
+    panel = next(p for p in scene.pattern.panels if p.name == "INSERT")
+    edge = scene.pattern.edges[LINE]
+    kept = edge.points(panel)
+    for candidate in free:
+        assert candidate.name != LINE
+        if candidate.kind in ("offset", "length"):
+            changed = changes.pattern({candidate: MM})
+            own = next(p for p in changed.panels if p.name == "INSERT")
+            assert (edge.points(own) == kept).all()
+    assert len(free) < len(free_of(scene, changes)) - 1

@@ -124,6 +124,14 @@ class Changes:
         foam = replace(scene.foam, vertices=vertices, curves=MappingProxyType(curves))
         return replace(scene, pattern=pattern, hooks=tuple(hooks), foam=foam)
 
+    def moves_any(self, candidate: Candidate, names: frozenset[str]) -> bool:
+        """Whether a change of an edge moves an edge of these names too, as at their corner."""
+        if candidate.kind not in ("offset", "length"):
+            return False
+        outline = self.outlines[candidate.panel]
+        sides = [side.at for side in outline.sides if side.edge in names]
+        return bool(sides) and bool(outline_way(outline, candidate)[np.concatenate(sides)].any())
+
     def _redrawn(self, number: int, panel: Panel, way: FloatArray, inner: FloatArray) -> Panel:
         """A panel whose outline moves by ``way``; allowance and notches follow the sew line."""
         ring = np.vstack([panel.outline, panel.outline[:1]])

@@ -11,7 +11,7 @@ import numpy as np
 
 from seatlook.chain.assess import Assessment
 from seatlook.errors import InvertedElementError, SolverError
-from seatlook.improvement.candidate import Candidate, candidates_of, free_candidates, limits_of
+from seatlook.improvement.candidate import Candidate
 from seatlook.improvement.changes import Amounts, Changes, added
 from seatlook.improvement.moves import Move
 from seatlook.improvement.objective import Goal, Parts, objective_of
@@ -24,6 +24,7 @@ from seatlook.improvement.ways import (
     SMALLEST,
     Ways,
     checked,
+    free_of,
     ways_at,
 )
 from seatlook.model import Scene, Solution
@@ -264,8 +265,7 @@ class _Seat:
     def __init__(self, scene: Scene, assessment: Assessment, goal: Goal) -> None:
         self._scene, self._start = scene, assessment.solution
         self._changes = Changes(self._start, scene.pattern)
-        every = candidates_of(self._start.cover, self._changes.outlines)
-        free_candidates(scene, every, limits_of(scene.improve))  # refuses before anything is done
+        free_of(scene, self._changes)  # refuses before anything is done
         self._objective = objective_of(scene, assessment, goal)
         self._solved: dict[frozenset[tuple[Candidate, float]], Solution] = {}
 

@@ -8,7 +8,14 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook.errors import SolverError
-from seatlook.improvement.candidate import Kind, candidates_of, free_candidates, limits_of
+from seatlook.improvement.candidate import (
+    Candidate,
+    Kind,
+    candidates_of,
+    free_candidates,
+    frozen_names,
+    limits_of,
+)
 from seatlook.improvement.changes import Amounts, Changes
 from seatlook.improvement.missing_hooks import Unhooked, unhooked_wires
 from seatlook.improvement.moves import Move, moves_of
@@ -164,7 +171,7 @@ def ways_at(
     """
     limits = limits_of(scene.improve)
     every = candidates_of(changes.solution.cover, changes.outlines)
-    free = free_candidates(scene, every, limits)
+    free = free_of(scene, changes)
     balance = Balance(solution, slides=True)
     balance.polish(_BALANCED)
     here = changes.beyond(made)
@@ -183,6 +190,20 @@ def ways_at(
     ways.moves = tuple(sorted(moves, key=lambda m: -abs(ways.slope(m)) * limits[m.kind]))
     ways.fixed = moves_of(changes, held, pairs=pairs)
     return ways
+
+
+def free_of(scene: Scene, changes: Changes) -> tuple[Candidate, ...]:
+    """List what may change: not frozen, and nothing that would move a frozen edge by its corner.
+
+    Raises
+    ------
+    InputError
+        None is left.
+    """
+    frozen = frozen_names(scene)
+    every = candidates_of(changes.solution.cover, changes.outlines)
+    apart = [c for c in every if not changes.moves_any(c, frozen)]
+    return free_candidates(scene, apart, limits_of(scene.improve))
 
 
 def checked(
