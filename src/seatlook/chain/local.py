@@ -42,7 +42,8 @@ _MESHES = 3  # are made for a tolerance at most, each finer by as much as the on
 _AIM = 0.9  # times the tolerance is what a mesh is made for where one missed it
 _FINER = 0.5  # times the tolerance that sized a mesh sizes the next one at least
 SIZED = "w2_sized"  # figure of a coarser mesh: share of the tolerance that the next is made for
-_SECONDS = 1e-3  # CPU seconds for a vertex: docs/charts/tolerance.csv
+_SECONDS, _MANY = 1e-3, 4000.0  # CPU seconds for a vertex on meshes of so many, and
+_SLOWER = 0.3  # the power of their number by which it takes longer: docs/charts/tolerance.csv
 _ADDED = ("steps", "iterations", "cpu_seconds")
 
 
@@ -100,13 +101,13 @@ def forecast(scene: Scene) -> Forecast:
     finest, coarsest = finest_size(scene), coarsest_size(scene)
     sizes = coarsest, min(finest, coarsest)
     fewest, most = (round(area / (size**2 * math.sqrt(0.75))) for size in sizes)
-    first = _SECONDS * fewest
+    first, all_fine = (n * _SECONDS * (n / _MANY) ** _SLOWER for n in (fewest, most))
     return Forecast(
         tolerance=_asked(scene),
         finest=sizes[1],
         coarsest=coarsest,
         vertices=(fewest, most),
-        cpu_seconds=(first + 0.5 * first, first + _SECONDS * most),
+        cpu_seconds=(first + 0.5 * first, first + all_fine),
     )
 
 
