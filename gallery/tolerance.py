@@ -88,7 +88,8 @@ def chart() -> None:
     cases: dict[Case, list[dict[str, str]]] = defaultdict(list)
     for row in TABLE.read():
         cases[case_of(row)].append(row)
-    materials = list(dict.fromkeys(case[0] for case in cases))
+    # Without a mesh of one size there is nothing to compare with.
+    materials = list(dict.fromkeys(case[0] for case in cases if case[1] == "uniform"))
     figure, panels = plt.subplots(1, len(materials), figsize=(3.4 * len(materials), 3.6))
     for panel, material in zip(np.atleast_1d(panels), materials, strict=True):
         own = {case: zones for case, zones in cases.items() if case[0] == material}
