@@ -82,3 +82,29 @@ def test_a_compiled_module_is_loaded_to_its_end(signal):
 @pytest.mark.parametrize("signal", ["SIGINT", "SIGTERM"])
 def test_the_compiler_gets_what_it_asks_for(signal):
     assert run(WHILE_CALLED_BACK.format(signal=signal)) == "to the end: True\n"
+
+
+TWICE = """
+import os, signal, time
+from seatlook import _interrupt
+
+def held():
+    os.kill(os.getpid(), signal.{signal})
+    time.sleep(0.01)
+    os.kill(os.getpid(), signal.{signal})
+
+held.__globals__["__name__"] = _interrupt._CALLED_BACK
+_interrupt.heed()
+try:
+    held()
+    __name__ = "__main__"
+    time.sleep(10.0)
+except KeyboardInterrupt:
+    time.sleep(0.5)
+    print("once")
+"""
+
+
+@pytest.mark.parametrize("signal", ["SIGINT", "SIGTERM"])
+def test_two_that_had_to_wait_end_a_command_once(signal):
+    assert run(TWICE.format(signal=signal)) == "once\n"

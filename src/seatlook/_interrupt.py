@@ -19,6 +19,7 @@ _CALLED_BACK = "llvmlite.binding.executionengine"  # kept from answering, it giv
 
 _process = os.getpid()
 _asked = threading.Event()
+_last: list[threading.Timer] = []  # of several signals only the last is repeated
 
 
 def heed() -> None:
@@ -51,6 +52,7 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
     fragile = _is_fragile(frame)
     timer = threading.Timer(_SOON if fragile else _AGAIN, _again, [number])
     timer.daemon = True
+    _last[:] = [timer]
     timer.start()
     if not fragile:
         raise KeyboardInterrupt
@@ -73,6 +75,8 @@ def _unraisable(unraisable: sys.UnraisableHookArgs) -> None:
 
 def _again(number: int) -> None:
     """Interrupt the main thread, also where it waits: of that a flag alone would not wake it."""
+    if threading.current_thread() not in _last:
+        return  # two would meet whoever handles the first
     main = threading.main_thread().ident
     if sys.platform == "win32" or main is None:
         _thread.interrupt_main(signal.Signals(number))
