@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import base64
+import importlib
 import io
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -49,3 +51,24 @@ def said(page: Any, name: str) -> str:
 
 def put(page: Any, name: str, value: str) -> None:
     page.locator(f"#viewer-{name}").fill(value)
+
+
+def assert_accessible_and_narrow(
+    browser: Any, address: str, width: int, then: Callable[[Any], object]
+) -> None:
+    """Open the viewer in a window so wide, do something, find no violation and no overflow."""
+    axe = importlib.import_module("axe_playwright_python.sync_playwright").Axe()
+    # The checker is injected as a script, which the page's own policy rightly refuses.
+    context = browser.new_context(
+        offline=True, bypass_csp=True, viewport={"width": width, "height": 900}
+    )
+    page = context.new_page()
+    page.goto(address)
+    if width == 360:
+        page.locator("#viewer-head .fold").click()
+    open_viewer(page)
+    then(page)
+    assert page.evaluate("() => document.documentElement.scrollWidth") == width
+    result = axe.run(page)
+    assert result.violations_count == 0, result.generate_report()
+    context.close()

@@ -2,53 +2,18 @@ import re
 import shutil
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from seatlook.errors import InputWarning
-from seatlook.io.curves import write_curves
 from seatlook.io.scene.keys import scene_keys
 from seatlook.io.scene.read import load_scene
-from seatlook.io.surface.axes import METRES
 from seatlook.io.surface.design import write_obj
 from seatlook.wrinkle import figure_names
-from support.example_scene import BLOCKS, EXAMPLE, write_example_files
+from support.example_scene import BLOCKS, EXAMPLE
 from support.io_samples import box
 
 ROOT = Path(__file__).parents[3]
 FIGURES = ", ".join(figure_names())
-
-
-@pytest.fixture
-def folder(tmp_path):
-    return write_example_files(tmp_path)
-
-
-@pytest.fixture
-def load(folder):
-    def load(text=EXAMPLE):
-        (folder / "scene.toml").write_text(text)
-        return load_scene(folder / "scene.toml")
-
-    return load
-
-
-@pytest.fixture
-def refused(load, problems):
-    """Load the example with texts replaced; return the messages, {} stands for the line."""
-
-    def refused(*changes):
-        text = EXAMPLE
-        for old, new in changes:
-            assert old in text, old
-            text = text.replace(old, new, 1)
-        rows = text.splitlines()
-        got = problems(load, text)
-        return got, lambda start: next(
-            i for i, row in enumerate(rows, start=1) if row.startswith(start)
-        )
-
-    return refused
 
 
 def test_documented_example(load, folder):
@@ -355,76 +320,3 @@ def test_bad_values(refused, old, new, message):
 def test_limits_name_figures_of_the_zone_table():
     limits = {"w2_mean", "w2_p95", "w2_area_share", "w2_net_mean", "excess_strain_percent_mean"}
     assert limits <= set(figure_names()) <= set(scene_keys()["accept"].table.keys)
-
-
-def rewire(folder, *points):
-    write_curves({"wire left": np.array(points, float),
-                  "wire across": np.array([[0.15, -0.2, 0.08], [0.15, 0.2, 0.08]]),
-                  "frame front": np.array([[0.15, -0.2, 0.06], [0.15, 0.2, 0.06]])},
-                 folder / "curves.toml")  # fmt: skip
-
-
-def test_hook_line_longer_than_its_wire(refused, folder):
-    rewire(folder, [0.15, -0.2, 0.08], [0.15, 0.2, 0.08])
-    got, line = refused(("seed = 0", "seed = 1"))
-    assert got == [
-        f"scene.toml:{line('line = ')}: hook[0].line: got 'left bolster', 460.2 mm long, "
-        "expected at most the length of its wire 'wire left', 400.0 mm"
-    ]
-
-
-def test_wire_inside_solid_foam(refused, folder):
-    rewire(folder, [0.15, -0.23, 0.06], [0.15, 0.23, 0.08])
-    got, line = refused(("seed = 0", "seed = 1"))
-    # The box is 100 mm high and 500 mm deep: 38 mm down at 20 mm or more from its front.
-    (message,) = got
-    where = f"scene.toml:{line('wire = ')}: hook[0].wire: got 'wire left', "
-    assert message.startswith(where)
-    depth = float(message.removeprefix(where).split(" mm inside solid foam")[0])
-    assert depth == pytest.approx(39.5, abs=0.6)
-    assert message.endswith("expected a wire in a trench, or at most 30 mm below the surface")
-
-
-def test_wire_that_leaves_the_foam_is_not_inside_it(load, folder):
-    rewire(folder, [0.15, -0.23, 0.18], [0.15, 0.23, 0.18])
-    assert set(load().foam.curves) == {"wire left", "wire across", "frame front"}
-
-
-@pytest.mark.parametrize(
-    ("unit", "written", "size", "fits"),
-    [
-        ("mm", "m", "0.0005", '0.5 m in "m"'),
-        ("m", "mm", "500", '0.5 m in "mm"'),
-        ("mm", "inch", "0.01969", '0.1969 m in "cm" or 0.5 m in "inch"'),
-    ],
-)
-def test_foam_in_the_wrong_unit(refused, folder, unit, written, size, fits):
-    """A box half a metre wide, read in another unit than it is written in."""
-    corners, faces = box()
-    write_obj(1e-3 * corners / METRES[written], faces, folder / "foam.obj")
-    got, line = refused(('unit = "mm"', f'unit = "{unit}"'))
-    assert got[0] == (
-        f'scene.toml:{line("unit = ")}: foam.unit: got "{unit}", by which foam.obj is {size} m '
-        f'wide, expected 0.05 to 3 m (unit = "{unit}" is taken; it is {fits})'
-    )
-
-
-def test_panels_placed_on_each_other(refused):
-    front = '[placement.FRONT]\naxes = ["+x", "+z"]\ntranslation_mm = [-260.0, -260.0, -20.0]'
-    on_it = '[placement.FRONT]\naxes = ["+x", "+y"]\ntranslation_mm = [-260.0, -260.0, {}]'
-    got, line = refused((front, on_it.format(130.0)))
-    (message,) = got
-    assert message.startswith(f"scene.toml:{line('[placement.FRONT]')}: placement.FRONT: got ")
-    assert message.endswith(
-        " cm2 on CENTER, in the same plane, expected panels beside or above each other"
-    )
-    # 300 x 100 mm; the front edge bulges by 10 mm (2/3 of 300 x 10 mm2), the sides by 6 mm, of
-    # which 2.2 cm2 each lie in front.
-    assert float(message.split("got ")[1].split(" cm2")[0]) == pytest.approx(324.5, abs=0.5)
-
-
-def test_panels_placed_above_each_other(load):
-    front = 'axes = ["+x", "+z"]\ntranslation_mm = [-260.0, -260.0, -20.0]'
-    assert front in EXAMPLE
-    above = 'axes = ["+x", "+y"]\ntranslation_mm = [-260.0, -260.0, 140.0]'
-    assert load(EXAMPLE.replace(front, above)).placement["FRONT"].translation[2] == 0.14

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import re
 import shlex
 from collections.abc import Iterator
@@ -16,7 +15,7 @@ from scipy import ndimage
 from seatlook import compare, io
 from seatlook.report.comparison_page import write_comparison
 from support.scene_files import TEXT, write_two_panels
-from support.viewing import listen, open_viewer, pixels, put, settle
+from support.viewing import assert_accessible_and_narrow, listen, open_viewer, pixels, put, settle
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(600)]
 
@@ -117,18 +116,4 @@ def test_the_variant_that_is_sent_is_shown_elsewhere(page, browser, tmp_path):
 
 @pytest.mark.parametrize("width", [360, 1280])
 def test_no_accessibility_violation_and_nothing_overflows(browser, address, width):
-    axe = importlib.import_module("axe_playwright_python.sync_playwright").Axe()
-    # The checker is injected as a script, which the page's own policy rightly refuses.
-    context = browser.new_context(
-        offline=True, bypass_csp=True, viewport={"width": width, "height": 900}
-    )
-    page = context.new_page()
-    page.goto(address)
-    if width == 360:
-        page.locator("#viewer-head .fold").click()
-    open_viewer(page)
-    choose(page, 1)
-    assert page.evaluate("() => document.documentElement.scrollWidth") == width
-    result = axe.run(page)
-    assert result.violations_count == 0, result.generate_report()
-    context.close()
+    assert_accessible_and_narrow(browser, address, width, lambda page: choose(page, 1))

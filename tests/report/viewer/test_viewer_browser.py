@@ -25,7 +25,17 @@ from seatlook.report.viewer_page import viewer_page
 from support.browsers import FLAGS
 from support.commands import seatlook as command
 from support.pages import page_data, write_png
-from support.viewing import STILL, differs, listen, open_viewer, pixels, put, said, settle
+from support.viewing import (
+    STILL,
+    assert_accessible_and_narrow,
+    differs,
+    listen,
+    open_viewer,
+    pixels,
+    put,
+    said,
+    settle,
+)
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(600)]
 
@@ -302,20 +312,9 @@ def test_a_lost_context_leaves_the_pictures(page):
 
 @pytest.mark.parametrize("width", [360, 1280])
 def test_no_accessibility_violation_and_nothing_overflows(browser, address, width):
-    axe = importlib.import_module("axe_playwright_python.sync_playwright").Axe()
-    # The checker is injected as a script, which the page's own policy rightly refuses.
-    context = browser.new_context(
-        offline=True, bypass_csp=True, viewport={"width": width, "height": 900}
-    )
-    page = context.new_page()
-    page.goto(address)
-    if width == 360:
-        page.locator("#viewer-head .fold").click()
-    open_viewer(page)
-    page.locator("#viewer-layer").select_option(label="W2")
-    page.locator("#viewer-toml").click()
-    settle(page)
-    assert page.evaluate("() => document.documentElement.scrollWidth") == width
-    result = axe.run(page)
-    assert result.violations_count == 0, result.generate_report()
-    context.close()
+    def colour_and_copy(page):
+        page.locator("#viewer-layer").select_option(label="W2")
+        page.locator("#viewer-toml").click()
+        settle(page)
+
+    assert_accessible_and_narrow(browser, address, width, colour_and_copy)
