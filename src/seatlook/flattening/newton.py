@@ -88,11 +88,12 @@ class Separable:
 
 def principal_stretches(F: FloatArray) -> FloatArray:
     """Return the principal stretches (m, 2) of faces that are not turned, large one first."""
-    square, twice = (F**2).sum(axis=(1, 2)), 2 * determinants(F)
-    total, apart = np.sqrt(square + twice), np.sqrt(np.maximum(square - twice, 0.0))
-    # Of their product: the difference would lose the digits of the small one.
+    # A difference of squares under a root would lose half the digits where both are alike.
+    total = np.hypot(F[:, 0, 0] + F[:, 1, 1], F[:, 1, 0] - F[:, 0, 1])
+    apart = np.hypot(F[:, 0, 0] - F[:, 1, 1], F[:, 1, 0] + F[:, 0, 1])
     high = 0.5 * (total + apart)
-    return np.column_stack([high, 0.5 * twice / high])
+    # Of their product: the difference would lose the digits of the small one.
+    return np.column_stack([high, determinants(F) / high])
 
 
 def _turned(angle: FloatArray) -> FloatArray:
