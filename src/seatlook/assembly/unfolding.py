@@ -85,8 +85,7 @@ def lay_out(
             hint=did_you_mean(first, names),
         )
     # Laid out with the broad side up, then turned back with it.
-    own = _upright(foam)
-    turn = _broad_side_up(foam.vertices @ own.T) @ own
+    turn = broad_side_up(foam)
     body = replace(foam, vertices=np.ascontiguousarray(foam.vertices @ turn.T))
     top = first or _largest(pattern)
     middle = _middle_of(body)
@@ -110,9 +109,15 @@ def lay_out(
     return Layout(
         first=top,
         poses=MappingProxyType(turned),
-        borders=lay_borders(pattern, foam, own, turned, depth),
+        borders=lay_borders(pattern, foam, _upright(foam), turned, depth),
         apart=unsewn,
     )
+
+
+def broad_side_up(foam: Foam) -> FloatArray:
+    """Rotation (3, 3) that turns up what is seen of a foam: its top, or the front if it stands."""
+    own = _upright(foam)
+    return np.asarray(_broad_side_up(foam.vertices @ own.T) @ own)
 
 
 def _largest(pattern: Pattern) -> str:

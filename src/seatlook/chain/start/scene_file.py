@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 
 from seatlook import io
+from seatlook.assembly.unfolding import broad_side_up
 from seatlook.errors import InputError
 from seatlook.io.surface.axes import Axes, Unit, Up
 from seatlook.io.templates import write_template
@@ -149,7 +150,7 @@ def write_scene(draft: SceneDraft, folder: Path) -> Path:
         curves=CURVES if curves else None,
         design=None if draft.design is None else _seen_from(draft.design, folder),
         bulbs={
-            name: _bulb((low + high) / 2, radius, sign)
+            name: _bulb(draft.foam.body, radius, sign)
             for name, sign in zip(draft.bulbs, (1.0, -1.0), strict=False)
         },
         ev100=round(_EV100 - 2.0 * float(np.log2(radius / _RADIUS)), 1),
@@ -194,9 +195,12 @@ def _size_notes(path: Path, surface: io.FoamSurface, *, guessed: bool) -> tuple[
     return tuple(notes)
 
 
-def _bulb(middle: FloatArray, radius: float, sign: float) -> list[float]:
-    """Place [mm] of a bulb above the front of a foam, to the left or the right, to 1 cm."""
-    place = middle + radius * _BULB * [sign, 1.0, 1.0]
+def _bulb(foam: Foam, radius: float, sign: float) -> list[float]:
+    """Place [mm] of a bulb before the broad side of a foam, to the left or right, to 1 cm."""
+    turn = broad_side_up(foam)
+    body = foam.vertices @ turn.T
+    middle = (body.min(axis=0) + body.max(axis=0)) / 2
+    place = (middle + radius * _BULB * [sign, 1.0, 1.0]) @ turn
     return [float(10 * round(100 * value)) for value in place]
 
 
