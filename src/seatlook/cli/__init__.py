@@ -17,6 +17,7 @@ from seatlook.cli import (
     _render,
     _score,
     _shape,
+    _showing,
     _solve,
     _sweep,
     _wrinkle,
@@ -41,6 +42,8 @@ app.command(_improve.improve)
 app.command(_compare.compare)
 app.command(_sweep.sweep)
 app.command(_render.render)
+app.command(_showing.turntable)
+app.command(_showing.sheet)
 app.command(_machine.materials)
 app.command(_identify.identify)
 app.command(_machine.doctor)

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
         write_curves as write_curves,
     )
     from seatlook.io.export.film import (
+        check_animation as check_animation,
+    )
+    from seatlook.io.export.film import (
         read_shapes as read_shapes,
     )
     from seatlook.io.export.film import (
@@ -120,6 +123,7 @@ if TYPE_CHECKING:
 _PUBLIC: dict[str, str] = {
     "FoamSurface": "seatlook.io.surface.foam",
     "GroupedMesh": "seatlook.io.surface.design",
+    "check_animation": "seatlook.io.export.film",
     "export_cover": "seatlook.io.export.writers",
     "list_foam_materials": "seatlook.io.material",
     "list_materials": "seatlook.io.material",
@@ -159,6 +163,7 @@ _PUBLIC: dict[str, str] = {
 __all__ = [
     "FoamSurface",
     "GroupedMesh",
+    "check_animation",
     "export_cover",
     "list_foam_materials",
     "list_materials",

@@ -160,6 +160,22 @@ def framed_view(name: str, points: FloatArray, *, size: tuple[int, int] = (1280,
     return named_view(name, target=middle, size=size, distance=_ROOM / _MARGIN * reach / share)
 
 
+def stepped_back(camera: Camera, points: FloatArray) -> Camera:
+    """Camera that stands as far back on its line of sight as it takes to see all points (n, 3) [m].
+
+    Examples
+    --------
+    >>> near = Camera(name="near", position=np.array([0.0, -1.0, 0.0]), target=np.zeros(3))
+    >>> far = stepped_back(near, np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    >>> round(-far.position[1], 2)
+    4.18
+    """
+    away = camera.position - camera.target
+    distance = float(np.linalg.norm(away))
+    reach = _ROOM * _whole(camera, points)
+    return replace(camera, position=camera.target + max(1.0, reach / distance) * away)
+
+
 def sphere_distance(points: FloatArray) -> float:
     """Viewing distance [m], in the ratio of the sphere around ``points`` (n, 3) to the demo's."""
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
