@@ -16,11 +16,13 @@ import tempfile
 import threading
 import traceback
 from collections import OrderedDict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from io import BufferedReader
+from contextvars import ContextVar
+from io import BufferedReader, BytesIO, RawIOBase
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from types import MappingProxyType
+from typing import ParamSpec, TypeVar, cast
 
 from seatlook.errors import InputError, SeatlookError
 
@@ -34,6 +36,7 @@ _KEPT = 8  # files of a reader whose content is kept
 LARGEST_TEXT = 4 * MIB  # of scenes, seams, curves, materials, sweeps, votes
 _STDERR = 2
 _silence = threading.RLock()
+_instead: ContextVar[Mapping[str, bytes]] = ContextVar("_instead", default=MappingProxyType({}))
 
 
 def reader(expected: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
@@ -144,6 +147,11 @@ def opened(
     def refusal(got: object, expected: str, hint: str = "") -> InputError:
         return InputError.single(key, got=got, expected=expected, file=path, hint=hint)
 
+    if (instead := _instead.get().get(os.path.abspath(path))) is not None:  # noqa: PTH100
+        if at_most is not None and len(instead) > at_most:
+            raise refusal(f"{len(instead) / MIB:,.0f} MiB", f"at most {at_most / MIB:,.0f} MiB")
+        yield BufferedReader(cast("RawIOBase", BytesIO(instead)))
+        return
     # Opening a pipe would wait for whoever writes to it.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     try:
@@ -166,6 +174,26 @@ def opened(
         yield stream
         if state_of(path) != state:
             raise refusal("a file that changes while it is read", "one that stays", "try again")
+
+
+@contextmanager
+def standing_in(contents: Mapping[Path, bytes]) -> Iterator[None]:
+    """Let readers find these contents in the place of files, as if they were written.
+
+    What would be wrong with a change is known before it is made. Holds in this thread only.
+
+    Examples
+    --------
+    >>> with standing_in({Path("a.txt"): b"not on disk"}):
+    ...     read_text(Path("a.txt"))
+    'not on disk'
+    """
+    paths = {os.path.abspath(path): content for path, content in contents.items()}  # noqa: PTH100
+    token = _instead.set({**_instead.get(), **paths})
+    try:
+        yield
+    finally:
+        _instead.reset(token)
 
 
 def state_of(path: Path) -> tuple[int, int, int] | None:

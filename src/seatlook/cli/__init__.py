@@ -19,6 +19,7 @@ from seatlook.cli import (
     _shape,
     _showing,
     _solve,
+    _studio,
     _sweep,
     _wrinkle,
 )
@@ -27,6 +28,7 @@ from seatlook.cli._app import app, run
 __all__ = ["app", "run"]
 
 app.command(_demo.demo)
+app.command(_studio.studio)
 app.command(_flatten.flatten)
 app.command(_mend.mend)
 app.command(_init.init)

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from seatlook.errors import InputError, Problem, did_you_mean
 from seatlook.files import LARGEST_TEXT, decoded, read_file
@@ -189,30 +189,38 @@ def _check_depth(text: str, path: Path) -> None:
             )  # fmt: skip
 
 
-def index_lines(text: str) -> dict[Key, int]:
-    r"""Return the line (from 1) on which each key of a valid TOML text is set.
+class Statement(NamedTuple):
+    """A header or an assignment of a TOML text.
+
+    Parameters
+    ----------
+    key : full; rows of an array of tables are counted from 0
+    line : from 1
+    start, end : offsets in the text; the end is behind the line's own
+    parsed : the statement alone
+    """
+
+    key: Key
+    line: int
+    start: int
+    end: int
+    parsed: dict[str, Any]
+    header: bool
+
+
+def statements(text: str) -> Iterator[Statement]:
+    r"""Cut a valid text into headers and assignments, which end with a line outside of brackets.
+
+    Comments and empty lines before a statement belong to none: it starts at its own line.
 
     Examples
     --------
-    >>> index_lines("a = 1\n[[rig]]\nname = 'sun'\n[rig.sky]\n")[("rig", 0, "name")]
-    3
+    >>> [one.key for one in statements("a = 1\n[[rig]]\nname = 'sun'\n")]
+    [('a',), ('rig', 0), ('rig', 0, 'name')]
     """
-    lines: dict[Key, int] = {}
+    start, line, first, depth = 0, 1, 1, 0
     rows: dict[Key, int] = {}
     table: Key = ()
-    for first, parsed, is_header in _statements(text):
-        if is_header:
-            table = _open_table(parsed, rows)
-            lines.setdefault(table, first)
-        else:
-            for key in _keys(parsed):
-                lines[(*table, *key)] = first
-    return lines
-
-
-def _statements(text: str) -> Iterator[tuple[int, dict[str, Any], bool]]:
-    """Cut a valid text into headers and assignments, which end with a line outside of brackets."""
-    start, line, first, depth = 0, 1, 1, 0
     for token in _TOKENS.finditer(f"{text}\n"):
         mark = token[0]
         depth += (mark in _OPENING) - (mark in _CLOSING)
@@ -222,8 +230,44 @@ def _statements(text: str) -> Iterator[tuple[int, dict[str, Any], bool]]:
         chunk = text[start : token.end()]
         bare = chunk.strip()
         if bare and not bare.startswith("#"):
-            yield first, tomllib.loads(chunk), bare.startswith("[")
+            parsed, header = tomllib.loads(chunk), bare.startswith("[")
+            if header:
+                key = table = _open_table(parsed, rows)
+            else:
+                key = (*table, *_dotted(chunk))
+            yield Statement(key, first, start, min(token.end(), len(text)), parsed, header)
         start, first = token.end(), line
+
+
+def _dotted(assignment: str) -> Key:
+    """Return the parts of the key before the equals sign."""
+    equals = next(t.start() for t in _TOKENS.finditer(assignment) if t[0] == "=")
+    node: Any = tomllib.loads(f"{assignment[:equals]}= 0")
+    key: Key = ()
+    while isinstance(node, dict):
+        name, node = next(iter(node.items()))
+        key = (*key, name)
+    return key
+
+
+def index_lines(text: str) -> dict[Key, int]:
+    r"""Return the line (from 1) on which each key of a valid TOML text is set.
+
+    Examples
+    --------
+    >>> index_lines("a = 1\n[[rig]]\nname = 'sun'\n[rig.sky]\n")[("rig", 0, "name")]
+    3
+    """
+    lines: dict[Key, int] = {}
+    table: Key = ()
+    for one in statements(text):
+        if one.header:
+            table = one.key
+            lines.setdefault(table, one.line)
+        else:
+            for key in _keys(one.parsed):
+                lines[(*table, *key)] = one.line
+    return lines
 
 
 def _open_table(parsed: dict[str, Any], rows: dict[Key, int]) -> Key:

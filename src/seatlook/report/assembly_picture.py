@@ -29,7 +29,7 @@ _ROW = 28  # px of a line of the legend
 _LOWEST, _HIGHEST = 440, 880  # px of a view
 
 # Dark enough for white numbers, and told apart by people who see no red or no green.
-_SEAMS: tuple[Colour, ...] = (
+SEAM_COLOURS: tuple[Colour, ...] = (
     (0, 92, 171),
     (200, 82, 0),
     (0, 122, 94),
@@ -165,7 +165,7 @@ def _strokes(line: StartLine) -> list[Stroke]:
 
 def _colour(line: StartLine) -> Colour:
     if line.kind == "seam":
-        return _SEAMS[(int(line.number) - 1) % len(_SEAMS)]
+        return SEAM_COLOURS[(int(line.number) - 1) % len(SEAM_COLOURS)]
     return _HOOK if line.kind == "hook" else _FRAME
 
 

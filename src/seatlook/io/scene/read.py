@@ -97,6 +97,24 @@ def report_pattern(path: Path | str, *, changes: Iterable[str] = ()) -> PatternR
     return report_dxf(file, **_reading(row)) if file.suffix.lower() == ".dxf" else None
 
 
+@reader("a scene")
+def load_pattern(path: Path | str) -> Pattern:
+    """Read the pattern of a scene as the scene wants it read, whatever else may be wrong with it.
+
+    Raises
+    ------
+    InputError
+        As ``load_scene``, of the pattern, its seams and the scene's keys alone.
+    """
+    document = read_document(Path(path))
+    row = read_table(document, scene_keys())
+    pattern = _Reader(document, row, SceneFiles(document)).pattern()
+    document.finish()
+    if pattern is None:
+        raise InputError.single("pattern", got="none", expected="a pattern", file=document.file)
+    return pattern
+
+
 def _reading(row: dict[str, Any]) -> Reading:
     """How the scene wants its pattern file to be read."""
     pattern, notch = row["pattern"], row["mesh"]["smallest_notch_mm"]

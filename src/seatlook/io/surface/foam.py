@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatlook.errors import InputError, InputWarning
-from seatlook.files import reader
+from seatlook.files import kept, reader
 from seatlook.io.curves import read_curves
 from seatlook.io.surface.axes import Axes, Unit, Up, file_axes
 from seatlook.io.surface.formats import joined, read_parts
@@ -76,6 +76,7 @@ def read_foam(
 
 
 @reader("a closed surface")
+@kept
 def read_foam_surface(
     path: Path,
     *,

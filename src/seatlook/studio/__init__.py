@@ -1,0 +1,1 @@
+"""A local web application: the files of a scene with hands."""

@@ -1,0 +1,118 @@
+"""What the server answers: one function for each address."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, Response
+from starlette.routing import Route
+
+from seatlook.errors import InputError, SeatlookError
+from seatlook.studio.guard import Door, Guard
+from seatlook.studio.session import Clash, Session
+from seatlook.studio.shell import page
+from seatlook.studio.state import problem_values
+
+LARGEST_REQUEST = 2**20  # bytes of what is posted, uploads apart
+Handler = Callable[[Request], Awaitable[Response]]
+
+
+class TooLarge(Exception):  # noqa: N818 -- it says what is wrong
+    """More was posted than is read."""
+
+
+def make_app(session: Session, door: Door) -> Starlette:
+    """Put a session behind its guard."""
+    routes = [
+        Route("/", _page),
+        Route("/api/state", _answering(_state)),
+        Route("/api/edit", _answering(_edit), methods=["POST"]),
+    ]
+    app = Starlette(routes=routes, middleware=[Middleware(Guard, door=door)])
+    app.state.session = session
+    return app
+
+
+async def _page(request: Request) -> Response:
+    text, policy = await run_in_threadpool(page)
+    return HTMLResponse(text, headers={"content-security-policy": policy})
+
+
+async def _state(request: Request) -> Response:
+    return answer(await run_in_threadpool(session_of(request).state))
+
+
+async def _edit(request: Request) -> Response:
+    asked = await posted(request)
+    edits = asked.get("edits")
+    if not isinstance(edits, list) or not edits:
+        raise InputError.single("edits", got=repr(edits)[:60], expected="a list of edits")
+    return answer(await run_in_threadpool(session_of(request).edit, asked.get("base"), edits))
+
+
+def session_of(request: Request) -> Session:
+    """The session that the server was started with."""
+    session: Session = request.app.state.session
+    return session
+
+
+async def posted(request: Request) -> dict[str, Any]:
+    """Read the JSON of a request.
+
+    Raises
+    ------
+    InputError
+        It is none, or no object.
+    TooLarge
+        It is longer than ``LARGEST_REQUEST``.
+    """
+    content = bytearray()
+    async for part in request.stream():
+        content += part
+        if len(content) > LARGEST_REQUEST:
+            raise TooLarge
+    try:
+        value = json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise InputError.single("request", got=f"no JSON: {error}", expected="JSON") from error
+    if not isinstance(value, dict):
+        raise InputError.single("request", got=type(value).__name__, expected="a JSON object")
+    return value
+
+
+def answer(values: Mapping[str, Any], status: int = 200) -> Response:
+    """Plain values as JSON; what is not finite is no value."""
+    text = json.dumps(values, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return Response(text, status_code=status, media_type="application/json")
+
+
+def _answering(handler: Handler) -> Handler:
+    """Say what went wrong in the way that the page shows it."""
+
+    async def answered(request: Request) -> Response:
+        try:
+            return await handler(request)
+        except Clash as clash:
+            said = {"reason": clash.reason, "mine": clash.mine, "theirs": clash.theirs}
+            return answer(said, 409)
+        except InputError as error:
+            folder = session_of(request).folder
+            return answer({"errors": [problem_values(folder, p) for p in error.problems]}, 422)
+        except SeatlookError as error:
+            return _said(str(error), 422)
+        except TooLarge:
+            return _said(f"more than {LARGEST_REQUEST} bytes were sent", 413)
+        except OSError as error:
+            return _said(f"{error.filename or 'file system'}: {error.strerror or error}", 507)
+
+    return answered
+
+
+def _said(text: str, status: int) -> Response:
+    return answer({"errors": [{"file": None, "line": None, "key": "", "text": text}]}, status)
