@@ -1,11 +1,12 @@
-// Rules for the viewer's script; types are checked by tsc.
+// Rules for the scripts of viewer and studio; types are checked by tsc.
 import js from "@eslint/js";
 
 const browser = [
-  "atob", "Blob", "cancelAnimationFrame", "console", "createImageBitmap", "DecompressionStream", "document",
-  "HTMLButtonElement", "HTMLCanvasElement", "HTMLElement", "HTMLInputElement", "HTMLOutputElement",
-  "HTMLSelectElement", "HTMLTextAreaElement", "navigator", "Option", "performance", "requestAnimationFrame",
-  "ResizeObserver", "Response", "setTimeout", "SVGCircleElement", "SVGSVGElement", "URL", "window",
+  "atob", "Blob", "cancelAnimationFrame", "clearTimeout", "console", "createImageBitmap", "DecompressionStream",
+  "document", "EventSource", "fetch", "HTMLButtonElement", "HTMLCanvasElement", "HTMLDialogElement", "HTMLElement",
+  "HTMLInputElement", "HTMLOutputElement", "HTMLProgressElement", "HTMLSelectElement", "HTMLTextAreaElement",
+  "matchMedia", "navigator", "Option", "performance", "requestAnimationFrame", "ResizeObserver", "Response",
+  "setTimeout", "SVGCircleElement", "SVGElement", "SVGSVGElement", "URL", "window",
 ];
 
 export default [

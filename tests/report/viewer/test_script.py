@@ -39,6 +39,18 @@ def test_modules_in_folders_are_found_from_where_they_are_named(tmp_path):
     assert "const b = 1;\n\nconst a" in joined("main", tmp_path)
 
 
+def test_modules_of_another_page_are_found_above(tmp_path):
+    for name in ("page/deep", "shared"):
+        (tmp_path / name).mkdir(parents=True)
+    write(tmp_path / "page", main='import { a } from "./deep/one.js";\na();\n')
+    write(
+        tmp_path / "page/deep",
+        one='import { b } from "../../shared/two.js";\nexport const a = () => b;\n',
+    )
+    write(tmp_path / "shared", two="export const b = 1;\n")
+    assert "const b = 1;\n\nconst a" in joined("main", tmp_path / "page")
+
+
 @pytest.mark.failure
 @pytest.mark.parametrize(
     ("other", "said"),

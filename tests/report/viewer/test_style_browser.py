@@ -1,4 +1,4 @@
-"""The viewer's script keeps its types and its style."""
+"""The scripts of viewer and studio keep their types and their style."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from seatlook.report.viewer import script
 pytestmark = pytest.mark.browser
 
 ROOT = Path(__file__).parents[3]
-MODULES = Path(script.__file__).with_name("script")
+MODULES = [
+    Path(script.__file__).with_name("script"),
+    ROOT / "src/seatlook/studio/page/script",
+]
 TOOLS = Path(sys.prefix) / "three/node_modules"
 
 
@@ -27,13 +30,16 @@ def test_types_are_kept():
     run(ROOT, TOOLS / ".bin/tsc", "--project", ".ci/tsconfig.json")
 
 
-def test_rules_are_kept(tmp_path):
-    shutil.copytree(MODULES, tmp_path / "script")
+@pytest.mark.parametrize("modules", MODULES, ids=["viewer", "studio"])
+def test_rules_are_kept(tmp_path, modules):
+    shutil.copytree(modules, tmp_path / "script")
     shutil.copy(ROOT / ".ci/eslint.config.mjs", tmp_path)
     (tmp_path / "node_modules").symlink_to(TOOLS)
     run(tmp_path, TOOLS / ".bin/eslint", "script")
 
 
 def test_no_module_is_longer_than_a_file_of_python_may_be():
-    lines = {path.name: path.read_text().count("\n") for path in MODULES.rglob("*.js")}
+    lines = {
+        path: path.read_text().count("\n") for modules in MODULES for path in modules.rglob("*.js")
+    }
     assert max(lines.values()) <= 400, lines

@@ -1,4 +1,4 @@
-"""The viewer's modules as one classic script: a page opened from a folder can load no modules."""
+"""Modules of a page as one classic script: a page opened from a folder can load no modules."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import re
 from pathlib import Path
 
 _FOLDER = Path(__file__).with_name("script")
-_IMPORT = re.compile(r'^import \{([^}]*)\} from "\./([a-z_/]+)\.js";\n', re.MULTILINE)
+_IMPORT = re.compile(
+    r'^import \{([^}]*)\} from "((?:\./|(?:\.\./)+)[a-z_/]+)\.js";\n', re.MULTILINE
+)
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|const|class) )", re.MULTILINE)
 _NAME = re.compile(
     r"^(?:export )?(?:async )?(?:(?:function|class) (\w+)|(?:const|let) (\w+) =)", re.MULTILINE
@@ -26,7 +28,7 @@ def joined(first: str = "main", folder: Path = _FOLDER) -> str:
         text that would end the page's script element.
     """
     texts: dict[Path, str] = {}
-    _visit(folder / f"{first}.js", texts, ())
+    _visit((folder / f"{first}.js").resolve(), texts, ())
     owner: dict[str, str] = {}
     for path, text in texts.items():
         module = path.stem
@@ -54,5 +56,5 @@ def _visit(path: Path, texts: dict[Path, str], above: tuple[Path, ...]) -> None:
     for names, other in _IMPORT.findall(text):
         if " as " in names:
             raise ValueError(f"{path.name} renames what it imports from {other}.js")
-        _visit(path.parent / f"{other}.js", texts, (*above, path))
+        _visit((path.parent / f"{other}.js").resolve(), texts, (*above, path))
     texts[path] = text

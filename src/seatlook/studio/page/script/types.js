@@ -1,0 +1,31 @@
+// What the server says of a folder.
+
+/** @typedef {[number, number]} Place on the pattern [mm] */
+/** @typedef {{at_mm: number, point_mm: Place}} Notch */
+/** @typedef {{name: string, points_mm: Place[], length_mm: number, notches?: Notch[]}} Edge */
+/** @typedef {{name: string, points_mm: Place[]}} Line */
+/** @typedef {{name: string, outline_mm: Place[], cut_mm?: Place[] | null, grain_mm?: [Place, Place] | null,
+ *   corners_mm: Place[], holes_mm?: Place[][], lines?: Line[], edges: Edge[]}} Panel */
+/** @typedef {{panel: string, edges: string[], points_mm?: Place[][]}} Side edges that are only guessed
+ *   come with their points */
+/** @typedef {{name: string, number: number, first: Side, second: Side, ease_percent: number,
+ *   lengths_mm: [number, number], kind?: string}} Seam */
+/** @typedef {{id: string, name: string, first: Side, second: Side, probability: number, reason: string,
+ *   rivals?: string[], lengths_mm?: [number, number]}} Guess */
+/** @typedef {{name: string, start_s: number, end_s: number, group?: string | null, ramp?: string | null,
+ *   seams?: string[]}} Stage */
+/** @typedef {{panel: string, start: Place, end: Place}} Picked */
+/** @typedef {{first: Picked, second: Picked, lengths_mm: [number, number], ease_percent: number,
+ *   rivals?: any[], warnings?: string[]}} Partner */
+/** @typedef {{name: string, title: string, swatch_url?: string | null, source?: string}} MaterialCard */
+/** @typedef {{path: string, status: string, page_url?: string | null,
+ *   snapshots?: {name: string, url?: string | null}[]}} Run */
+/** @typedef {{file?: string, line?: number | null, key?: string, text: string}} Fault */
+/** @typedef {{etag: string, folder: string | null, has_scene: boolean, errors: Fault[], undo: string | number | boolean | null,
+ *   redo: string | number | boolean | null, left_out?: {what: string, reason: string}[],
+ *   pattern: {panels: Panel[]} | null, seams: Seam[], guesses: Guess[], stages: Stage[],
+ *   hooks: Record<string, any>[], wires: any[], frames: Record<string, any>[],
+ *   placement?: Record<string, any>, panels: Record<string, Record<string, any>>, rigs: any[], camera: Record<string, any> | null, materials: MaterialCard[],
+ *   runs: Run[]}} State */
+
+export {};
