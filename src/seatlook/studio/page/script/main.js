@@ -56,6 +56,7 @@ class Studio {
       part(`tab-${room}`).tabIndex = own ? 0 : -1;
     }
     if (this.store.state) this.show(this.store.state);
+    if (name === "run" || name === "process") void this.store.loadRuns();
   }
 
   /** @param {KeyboardEvent} event @param {number} k */

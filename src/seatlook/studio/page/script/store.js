@@ -16,6 +16,8 @@ export class Store {
     /** @type {Promise<unknown>} */
     this.queue = Promise.resolve();
     this.waiting = 0;
+    /** @type {import("./types.js").Run[]} */
+    this.runs = [];
   }
 
   /** @returns {State} */
@@ -37,6 +39,12 @@ export class Store {
 
   async load() {
     this.take(await ask("/api/state"));
+  }
+
+  /** What was run, newest first. */
+  async loadRuns() {
+    this.runs = (await ask("/api/runs")).runs;
+    if (this.state) this.take(this.state);
   }
 
   /**

@@ -18,14 +18,14 @@
 /** @typedef {{first: Picked, second: Picked, lengths_mm: [number, number], ease_percent: number,
  *   rivals?: any[], warnings?: string[]}} Partner */
 /** @typedef {{name: string, title: string, swatch_url?: string | null, source?: string}} MaterialCard */
-/** @typedef {{path: string, status: string, page_url?: string | null,
+/** @typedef {{run: string, command?: string, path?: string, status: string, page_url?: string | null,
  *   snapshots?: {name: string, url?: string | null}[]}} Run */
 /** @typedef {{file?: string, line?: number | null, key?: string, text: string}} Fault */
 /** @typedef {{etag: string, folder: string | null, has_scene: boolean, errors: Fault[], undo: string | number | boolean | null,
- *   redo: string | number | boolean | null, left_out?: {what: string, reason: string}[],
+ *   redo: string | number | boolean | null, name: string,
  *   pattern: {panels: Panel[]} | null, seams: Seam[], guesses: Guess[], stages: Stage[],
  *   hooks: Record<string, any>[], wires: any[], frames: Record<string, any>[],
- *   placement?: Record<string, any>, panels: Record<string, Record<string, any>>, rigs: any[], camera: Record<string, any> | null, materials: MaterialCard[],
- *   runs: Run[]}} State */
+ *   placement?: Record<string, any>, panels: Record<string, Record<string, any>>, rigs: any[], camera: Record<string, any>,
+ *   materials?: MaterialCard[]}} State */
 
 export {};

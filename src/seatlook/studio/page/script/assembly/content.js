@@ -1,12 +1,12 @@
 // What is drawn of a seat before it is solved: bodies, lines and faults from the server's answer.
 
-/** @typedef {number[][]} Points [mm] */
-/** @typedef {{name?: string, seam?: string, number?: number | string, segments_mm?: number[][][], points_mm?: Points,
- *   target?: string}} Tie */
-/** @typedef {{kind: string, sentence: string, file?: string | null, line?: number | null, places_mm: Points}} Fault */
-/** @typedef {{foam: {positions_mm: Points, triangles: number[][]} | null,
- *   panels: {name: string, positions_mm: Points, triangles: number[][]}[], ties: Tie[], wires: Tie[], hooks: Tie[],
- *   frames: Tie[], faults: Fault[], seconds?: number}} Assembly */
+/** @typedef {{kind: "seam" | "hook" | "frame", number: string | number, name: string, target: string, gap_mm: number,
+ *   segments_mm: number[][]}} Tie segments as x, y, z of both ends */
+/** @typedef {{name: string, points_mm: number[][]}} Curve */
+/** @typedef {{kind: string, text: string, file?: string | null, line?: number | null, places_mm: number[][]}} Fault */
+/** @typedef {{positions_mm: number[], triangles: number[]}} Skin row after row */
+/** @typedef {{foam: Skin | null, panels: (Skin & {name: string})[], ties: Tie[], wires: Curve[], faults: Fault[],
+ *   seconds?: number}} Assembly */
 /** @typedef {import("./stage.js").Line} Line */
 
 /** Seams are told apart by people who see no red or no green. */
@@ -25,50 +25,47 @@ export const panelTint = (number) => PANEL_TINTS[number % PANEL_TINTS.length];
 /** @param {number[]} place [mm] */
 const metres = (place) => place.map((x) => x / 1e3);
 
-/** Points of a line as pairs of ends [m]. @param {Tie} tie */
-function pairsOf(tie) {
-  if (tie.segments_mm) return tie.segments_mm.flatMap(([a, b]) => [metres(a), metres(b)]);
-  const points = tie.points_mm ?? [];
-  return points.slice(1).flatMap((place, k) => [metres(points[k]), metres(place)]);
-}
+/** Ends of ties, one pair after the other [m]. @param {Tie} tie */
+const pairsOf = (tie) => tie.segments_mm.flatMap((ends) => [metres(ends.slice(0, 3)), metres(ends.slice(3))]);
 
-/**
- * Edges that only one triangle has.
- * @param {Points} positions
- * @param {number[][]} triangles
- */
-function borderOf(positions, triangles) {
+/** A curve as pairs of ends [m]. @param {Curve} curve */
+const piecesOf = ({ points_mm: points }) => points.slice(1).flatMap((place, k) => [metres(points[k]), metres(place)]);
+
+/** Edges that only one triangle has, as pairs of ends [m]. @param {Skin} skin */
+function borderOf({ positions_mm: positions, triangles }) {
   /** @type {Map<string, number[] | null>} */
   const edges = new Map();
-  for (const triangle of triangles) {
+  for (let t = 0; t < triangles.length; t += 3) {
     for (let k = 0; k < 3; ++k) {
-      const ends = [triangle[k], triangle[(k + 1) % 3]];
+      const ends = [triangles[t + k], triangles[t + (k + 1) % 3]];
       const key = ends[0] < ends[1] ? `${ends[0]} ${ends[1]}` : `${ends[1]} ${ends[0]}`;
       edges.set(key, edges.has(key) ? null : ends);
     }
   }
-  return [...edges.values()].flatMap((ends) => (ends ? ends.map((k) => metres(positions[k])) : []));
+  return [...edges.values()].flatMap((ends) => (ends ? ends.map((k) => metres(positions.slice(3 * k, 3 * k + 3))) : []));
 }
+
+/** Number of a seam's colour. @param {Tie} tie */
+export const tintNumber = (tie) => (Number(tie.number) - 1) % SEAM_TINTS.length;
 
 /**
  * @param {Assembly} assembly
- * @param {string | null} seam the one that is chosen
+ * @param {string | null} chosen name of the seam that is shown
  * @returns {Line[]}
  */
-export function linesOf(assembly, seam) {
+export function linesOf(assembly, chosen) {
   /** @type {Line[]} */
-  const lines = assembly.panels.map(({ positions_mm: positions, triangles }) => ({
-    points: borderOf(positions, triangles), colour: BORDER, width: 1.2, lift: 0.0004,
-  }));
-  for (const wire of assembly.wires) lines.push({ points: pairsOf(wire), colour: WIRE, width: 4, lift: 0.0006 });
-  for (const frame of assembly.frames) lines.push({ points: pairsOf(frame), colour: FRAME, width: 1.2, lift: 0.0005 });
-  for (const hook of assembly.hooks) lines.push({ points: pairsOf(hook), colour: WIRE, width: 1.4, lift: 0.0005 });
-  assembly.ties.forEach((tie, k) => {
-    const number = Number(tie.number ?? k + 1);
-    const colour = SEAM_TINTS[(number - 1) % SEAM_TINTS.length].map((x) => x / 255);
-    const name = tie.seam ?? tie.name;
-    lines.push({ points: pairsOf(tie), colour, width: name === seam ? 4 : 1.8, lift: name === seam ? 0.002 : 0.0008 });
-  });
+  const lines = assembly.panels.map((panel) => ({ points: borderOf(panel), colour: BORDER, width: 1.2, lift: 0.0004 }));
+  for (const wire of assembly.wires) lines.push({ points: piecesOf(wire), colour: WIRE, width: 4, lift: 0.0006 });
+  for (const tie of assembly.ties) {
+    const points = pairsOf(tie);
+    if (tie.kind === "frame") lines.push({ points, colour: FRAME, width: 1.2, lift: 0.0005 });
+    else if (tie.kind === "hook") lines.push({ points, colour: WIRE, width: 1.4, lift: 0.0005 });
+    else {
+      const lit = tie.name === chosen, colour = SEAM_TINTS[tintNumber(tie)].map((x) => x / 255);
+      lines.push({ points, colour, width: lit ? 4 : 1.8, lift: lit ? 0.002 : 0.0008 });
+    }
+  }
   return lines;
 }
 

@@ -4,7 +4,7 @@ import { Camera } from "../../../../report/viewer/script/drawing/camera.js";
 import { Pointer } from "../../../../report/viewer/script/pointer.js";
 import { draw, find, make, part, press, put } from "../dom.js";
 import { Refusal, ask } from "../api.js";
-import { FOAM, linesOf, middleOfTie, panelTint, placesOf } from "./content.js";
+import { FOAM, linesOf, middleOfTie, panelTint, placesOf, tintNumber } from "./content.js";
 import { Mover } from "./mover.js";
 import { Stage } from "./stage.js";
 
@@ -57,7 +57,7 @@ export class AssemblyRoom {
   }
 
   layOut() {
-    return this.store.edit([{ kind: "lay" }], "Panels, hooks and frames are laid out anew from the seams.");
+    return this.store.edit([{ kind: "scene.arrange" }], "Panels, hooks and frames are laid out anew from the seams.");
   }
 
   async load() {
@@ -87,10 +87,9 @@ export class AssemblyRoom {
     const { stage } = this;
     part("assembly-said").textContent = assembly.seconds === undefined ? "" : `Put together and checked in ${assembly.seconds.toFixed(1)} s.`;
     if (stage) {
-      const metres = (/** @type {number[][]} */ points) => points.map((place) => place.map((x) => x / 1e3));
       const bodies = assembly.panels.map(({ name, positions_mm: places, triangles }, k) => (
-        stage.bodyOf(name, metres(places), triangles, panelTint(k))));
-      if (assembly.foam) bodies.push(stage.bodyOf("", metres(assembly.foam.positions_mm), assembly.foam.triangles, FOAM));
+        stage.bodyOf(name, places, triangles, panelTint(k))));
+      if (assembly.foam) bodies.push(stage.bodyOf("", assembly.foam.positions_mm, assembly.foam.triangles, FOAM));
       stage.setBodies(bodies);
       stage.setLines(linesOf(assembly, null));
       this.whole = stage.measure();
@@ -117,14 +116,20 @@ export class AssemblyRoom {
     put(part("fault-list"), ...faults.map((fault, k) => make("li", {},
       make("button", { type: "button", class: "row fault", "data-key": `fault ${k}`, click: () => this.fly(fault) },
         make("span", { class: "number bad" }, String(k + 1)),
-        make("span", {}, fault.sentence,
+        make("span", {}, fault.text,
           fault.file ? make("span", { class: "hint" }, ` ${fault.file}${fault.line ? `, line ${fault.line}` : ""}`) : null)))));
-    const names = new Map(ties.map((tie) => [tie.seam ?? tie.name ?? "", tie]));
-    put(part("tie-list"), ...[...names].map(([name, tie]) => make("li", {},
-      make("button", {
-        type: "button", class: "row", "aria-pressed": String(this.chosen === name), "data-key": `tie ${name}`,
-        click: () => this.choose(name),
-      }, make("span", { class: `number tint-${(Number(tie.number) - 1) % 8}` }, String(tie.number)), make("span", { class: "name" }, name)))));
+    put(part("tie-list"), ...ties.map((tie) => make("li", {}, this.tieRow(tie))));
+  }
+
+  /** @param {import("./content.js").Tie} tie */
+  tieRow(tie) {
+    const { kind, name, number, target, gap_mm: gap } = tie;
+    const words = [kind === "seam" ? "" : `${kind} to ${target}`, `${gap.toFixed(0)} mm apart`].filter(Boolean).join(", ");
+    return make("button", {
+      type: "button", class: "row", "aria-pressed": String(this.chosen === name), "data-key": `tie ${kind} ${name}`,
+      click: () => this.choose(name),
+    }, make("span", { class: `number ${lookOf(tie)}` }, String(number)), make("span", { class: "name" }, name),
+    make("span", { class: "figures" }, words));
   }
 
   /** @param {string} name of a seam */
@@ -180,7 +185,7 @@ export class AssemblyRoom {
     const out = [];
     for (const tie of assembly.ties) {
       const middle = middleOfTie(tie), at = middle && this.project(middle);
-      if (at) out.push(badge(at, String(tie.number), `tint-${(Number(tie.number) - 1) % 8}`, 9));
+      if (at) out.push(badge(at, String(tie.number), lookOf(tie), 9));
     }
     assembly.faults.forEach((fault, k) => {
       for (const place of placesOf(fault)) {
@@ -205,6 +210,9 @@ export class AssemblyRoom {
     return this.stage?.hit(this.camera.position, ray) ?? null;
   }
 }
+
+/** @param {import("./content.js").Tie} tie */
+const lookOf = (tie) => (tie.kind === "seam" ? `tint-${tintNumber(tie)}` : "plain-tint");
 
 /** @param {number[]} at @param {string} text @param {string} look @param {number} radius */
 function badge(at, text, look, radius) {

@@ -77,13 +77,13 @@ export class Stage {
 
   /**
    * @param {string} name
-   * @param {number[][]} places [m]
-   * @param {number[][]} triangles
+   * @param {number[]} places [mm] row after row
+   * @param {number[]} triangles
    * @param {number[]} colour
    */
   bodyOf(name, places, triangles, colour) {
     const { gl } = this;
-    const vertices = Float32Array.from(places.flat()), indices = Uint32Array.from(triangles.flat());
+    const vertices = Float32Array.from(places, (x) => x / 1e3), indices = Uint32Array.from(triangles);
     const array = gl.createVertexArray();
     gl.bindVertexArray(array);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());

@@ -25,7 +25,7 @@ export class LooksRoom {
   }
 
   get choices() {
-    return this.store.now.materials.map(({ name, title }) => ({ value: name, text: title || name }));
+    return (this.store.now.materials ?? []).map(({ name, title }) => ({ value: name, text: title || name }));
   }
 
   panels() {
@@ -42,12 +42,12 @@ export class LooksRoom {
   }
 
   library() {
-    put(part("material-cards"), ...this.store.now.materials.map(({ name, title, swatch_url: swatch, source }) => make("li", { class: "card" },
+    put(part("material-cards"), ...(this.store.now.materials ?? []).map(({ name, title, swatch_url: swatch, source }) => make("li", { class: "card" },
       swatch ? make("img", { src: swatch, alt: "", width: 96, height: 96 }) : make("span", { class: "no-swatch", "aria-hidden": "true" }),
       make("span", { class: "name" }, title || name),
       source ? make("span", { class: "hint" }, source) : null,
       press("Edit a copy", () => {
-        void this.store.edit([{ kind: "material.copy", name }], `A copy of ${title || name} lies in the folder now.`);
+        void this.store.edit([{ kind: "material.copy", material: name, name: `${name}-own` }], `A copy of ${title || name} lies in the folder now.`);
       }, { "data-key": `copy ${name}`, "aria-label": `Edit a copy of ${title || name}` }))));
   }
 
@@ -58,7 +58,7 @@ export class LooksRoom {
         make("span", { class: "kind" }, light.kind),
         ...Object.keys(LIGHT_WORDS).filter((key) => typeof light[key] === "number").map((key) => numberField(
           LIGHT_WORDS[key], light[key], (value) => {
-            void this.store.edit([{ kind: "rig.set", index, light: k, key, value }], `${rig.name}: ${LIGHT_WORDS[key]} is ${value}.`);
+            void this.store.edit([{ kind: "rig.set", index, key: ["light", k, key], value }], `${rig.name}: ${LIGHT_WORDS[key]} is ${value}.`);
           }, { "data-key": `rig ${index} ${k} ${key}` })))))));
   }
 

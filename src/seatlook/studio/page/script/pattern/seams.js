@@ -46,7 +46,7 @@ function editor(store, seam) {
     textField("Name", name, (to) => void store.edit([{ kind: "seam.rename", name, to }], `${name} is called ${to} now.`),
       { "data-key": `rename ${name}` }),
     numberField("Ease, %", Math.round(100 * seam.ease_percent) / 100 || 0, (percent) => {
-      void store.edit([{ kind: "seam.ease", name, percent }], `Ease of ${name}: ${percent} %.`);
+      void store.edit([{ kind: "seam.ease", name, percent, side: "first" }], `Ease of ${name}: ${percent} %.`);
     }, { min: -20, max: 20, "data-key": `ease ${name}` }),
     make("p", { class: "hint" }, `It joins ${kinds[seam.kind ?? "seam"] ?? seam.kind}: ${seam.first.edges.join(", ")} to ${seam.second.edges.join(", ")}.`),
     make("div", { class: "acts" },

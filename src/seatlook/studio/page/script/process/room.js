@@ -22,7 +22,7 @@ export class ProcessRoom {
       const last = stages[stages.length - 1];
       this.active = stages.length;
       void store.edit([{
-        kind: "stage.add", stage: { name: freeName(stages), start_s: last?.end_s ?? 0, end_s: (last?.end_s ?? 0) + 0.3 },
+        kind: "stage.add", values: { name: freeName(stages), start_s: last?.end_s ?? 0, end_s: (last?.end_s ?? 0) + 0.3 },
       }], "A stage is added.");
     });
   }
@@ -58,7 +58,7 @@ export class ProcessRoom {
         numberField("Starts at, s", stage.start_s, (x) => set("start_s", x, `${name} starts at ${x} s.`), { min: 0, "data-key": "stage start" }),
         numberField("Ends at, s", stage.end_s, (x) => set("end_s", x, `${name} ends at ${x} s.`), { min: 0, "data-key": "stage end" }),
         choiceField("Pull grows", stage.ramp ?? "linear", RAMP_WORDS, (x) => set("ramp", x, `${name}: the pull grows ${x}.`), { "data-key": "stage ramp" }),
-        textField("Group", stage.group ?? "", (x) => set("group", x, `${name} belongs to ${x}.`), { "data-key": "stage group" })),
+        textField("Group", stage.group ?? "", (x) => set("group", x || null, `${name} belongs to ${x}.`), { "data-key": "stage group" })),
       this.seamsOf(stage, index),
       make("div", { class: "acts" }, press("Remove this stage", () => {
         void this.store.edit([{ kind: "stage.remove", index }], `${name} is removed.`);
@@ -75,7 +75,7 @@ export class ProcessRoom {
         if (box.checked) own.add(name);
         else own.delete(name);
         const value = seams.map((seam) => seam.name).filter((one) => own.has(one));
-        void this.store.edit([{ kind: "stage.set", index, key: "seams", value }], `${name}: ${box.checked ? "closes in" : "no longer closes in"} ${stage.name}.`);
+        void this.store.edit([{ kind: "stage.set", index, key: "seams", value: value.length ? value : null }], `${name}: ${box.checked ? "closes in" : "no longer closes in"} ${stage.name}.`);
       } });
       box.checked = own.has(name);
       return make("label", { class: "check" }, box, `${number} ${name}`);
@@ -87,7 +87,7 @@ export class ProcessRoom {
   }
 
   snapshots() {
-    const run = this.store.now.runs.find(({ snapshots }) => snapshots?.some(({ url }) => url));
+    const run = this.store.runs.find(({ snapshots }) => snapshots?.some(({ url }) => url));
     put(part("snapshots"), ...(run?.snapshots ?? []).filter(({ url }) => url).map(({ name, url }) => make("figure", {},
       make("img", { src: url, alt: `The cover after ${name}` }), make("figcaption", {}, name))));
     part("snapshots-head").hidden = !run;

@@ -4,8 +4,8 @@ import { find, make, part, put } from "../dom.js";
 import { Refusal, tell } from "../api.js";
 
 /** @typedef {import("../store.js").Store} Store */
-/** @typedef {{type?: string, stage?: string, fraction?: number, seconds_left?: number | null, residual?: number | null,
- *   text?: string, status?: string, page_url?: string | null, code?: number}} News */
+/** @typedef {{run: string, status: string, stage?: string, fraction?: number, seconds_left?: number | null,
+ *   residual?: number | null, text?: string, page_url?: string | null}} News */
 
 /** @param {number} seconds */
 function timeWords(seconds) {
@@ -19,24 +19,22 @@ export class RunRoom {
     this.store = store;
     this.filesChanged = filesChanged;
     this.running = "";
+    this.run = "";
     part("run-evaluate").addEventListener("click", () => void this.start("evaluate"));
-    part("run-check").addEventListener("click", () => void this.start("check"));
     part("run-improve").addEventListener("click", () => void this.start("improve"));
     part("run-cancel").addEventListener("click", () => void this.cancel());
     const events = new EventSource("/api/events");
-    for (const type of ["progress", "done", "failed", "files-changed"]) {
-      events.addEventListener(type, (event) => this.hear({ type, ...JSON.parse(/** @type {MessageEvent} */ (event).data || "{}") }));
-    }
-    events.addEventListener("message", (event) => this.hear(JSON.parse(event.data || "{}")));
+    events.addEventListener("run", (event) => this.hear(JSON.parse(event.data)));
+    events.addEventListener("files", () => this.filesChanged());
   }
 
   show() {
-    const { runs, has_scene: ready } = this.store.now;
-    for (const id of ["run-evaluate", "run-check", "run-improve"]) find(id, HTMLButtonElement).disabled = !ready || this.running !== "";
+    const { runs, now: { has_scene: ready } } = this.store;
+    for (const id of ["run-evaluate", "run-improve"]) find(id, HTMLButtonElement).disabled = !ready || this.running !== "";
     part("run-cancel").hidden = this.running === "";
-    put(part("run-list"), ...runs.map(({ path, status, page_url: page }) => make("li", {},
-      make("span", { class: "name" }, path), make("span", { class: "figures" }, status),
-      page ? make("a", { href: page, target: "_blank", rel: "noopener", "data-key": `run ${path}` }, "Open the page") : null)));
+    put(part("run-list"), ...runs.map(({ run, command, path, status, page_url: page }) => make("li", {},
+      make("span", { class: "name" }, path ?? command ?? run), make("span", { class: "figures" }, status),
+      page ? make("a", { href: page, target: "_blank", rel: "noopener", "data-key": `run ${run}` }, "Open the page") : null)));
     part("run-none").hidden = runs.length > 0;
   }
 
@@ -49,7 +47,7 @@ export class RunRoom {
     find("run-bar", HTMLProgressElement).hidden = false;
     find("run-bar", HTMLProgressElement).removeAttribute("value");
     try {
-      await tell("/api/run", { command, options: {} });
+      this.run = (await tell("/api/run", { command, options: {} })).run;
     } catch (problem) {
       this.end(problem instanceof Refusal ? problem.message : "The studio's server does not answer.");
     }
@@ -58,7 +56,7 @@ export class RunRoom {
   async cancel() {
     part("run-words").textContent = "Stopping…";
     try {
-      await tell("/api/run/cancel", {});
+      await tell("/api/run/cancel", { run: this.run });
     } catch (problem) {
       this.store.voice.say(problem instanceof Refusal ? problem.message : "The studio's server does not answer.", true);
     }
@@ -66,15 +64,16 @@ export class RunRoom {
 
   /** @param {News} news */
   hear(news) {
-    if (news.type === "files-changed") this.filesChanged();
-    else if (news.type === "progress") this.progress(news);
-    else if (news.type === "done" || news.type === "failed") {
-      this.end(news.text ?? news.status ?? (news.type === "done" ? "Done." : "It did not work."));
-      if (news.page_url) {
-        put(part("run-result"), make("a", { href: news.page_url, target: "_blank", rel: "noopener", class: "main" }, "Open the result"));
-      }
-      void this.store.load();
+    this.run = news.run;
+    if (news.status === "running") {
+      this.progress(news);
+      return;
     }
+    this.end(news.text ?? news.status);
+    if (news.page_url) {
+      put(part("run-result"), make("a", { href: news.page_url, target: "_blank", rel: "noopener", class: "main" }, "Open the result"));
+    }
+    void this.store.loadRuns();
   }
 
   /** @param {News} news */

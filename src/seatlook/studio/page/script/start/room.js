@@ -4,23 +4,25 @@ import { choiceField, find, make, numberField, part, press, put } from "../dom.j
 import { Refusal, tell, upload } from "../api.js";
 
 /** @typedef {import("../store.js").Store} Store */
-/** @typedef {Record<string, any>} Draft what a dry run says */
+/** @typedef {{files: Record<string, string>, keys: Record<string, string>}} Draft what is asked for so far */
+/** @typedef {{notes?: string[], sizes?: Record<string, unknown>, left_out?: {what: string, reason: string}[]}} Seen */
 
 const SHAPES = ["cushion", "horseshoe", "backrest", "headrest", "box", "saddle"];
 const UNITS = ["", "mm", "cm", "m", "inch"].map((value) => ({ value, text: value || "as the file says" }));
+const ENCODINGS = ["", "utf-8", "cp1252", "gb18030", "shift_jis", "euc_kr"].map((value) => ({ value, text: value || "guessed" }));
 const UPS = [{ value: "", text: "as usual for the format" }, { value: "z", text: "z" }, { value: "y", text: "y" }];
-/** @type {Record<string, {file: string, needed: boolean, key: string, accept: string}[]>} */
+/** @type {Record<string, {text: string, needed: boolean, key: string, accept: string}[]>} */
 const FILES = {
   pattern: [
-    { file: "Pattern (DXF)", needed: true, key: "file", accept: ".dxf" },
-    { file: "Foam (OBJ, STL, PLY, GLB)", needed: true, key: "foam", accept: ".obj,.stl,.ply,.glb,.gltf" },
-    { file: "Wires in the foam (TOML), if there are any", needed: false, key: "wires", accept: ".toml" },
+    { text: "Pattern (DXF)", needed: true, key: "pattern", accept: ".dxf" },
+    { text: "Foam (OBJ, STL, PLY, GLB)", needed: true, key: "foam", accept: ".obj,.stl,.ply,.glb,.gltf" },
+    { text: "Wires in the foam (TOML), if there are any", needed: false, key: "wires", accept: ".toml" },
   ],
   surface: [
-    { file: "Design surface (OBJ, PLY, GLB)", needed: true, key: "file", accept: ".obj,.stl,.ply,.glb,.gltf" },
-    { file: "Lines on it (TOML), if the surface has no groups", needed: false, key: "lines", accept: ".toml" },
-    { file: "Foam (OBJ, STL, PLY, GLB)", needed: true, key: "foam", accept: ".obj,.stl,.ply,.glb,.gltf" },
-    { file: "Wires in the foam (TOML), if there are any", needed: false, key: "wires", accept: ".toml" },
+    { text: "Design surface (OBJ, PLY, GLB)", needed: true, key: "surface", accept: ".obj,.stl,.ply,.glb,.gltf" },
+    { text: "Seam lines on it (TOML), if it has no groups", needed: false, key: "lines", accept: ".toml" },
+    { text: "Foam (OBJ, STL, PLY, GLB)", needed: true, key: "foam", accept: ".obj,.stl,.ply,.glb,.gltf" },
+    { text: "Wires in the foam (TOML), if there are any", needed: false, key: "wires", accept: ".toml" },
   ],
 };
 
@@ -36,10 +38,7 @@ export class StartRoom {
   }
 
   show() {
-    const { state } = this.store;
-    const out = state?.left_out ?? [];
-    put(part("left-out"), ...out.map(leftOutRow));
-    part("left-out-box").hidden = out.length === 0;
+    this.demo();
   }
 
   demo() {
@@ -52,48 +51,53 @@ export class StartRoom {
 
   /** @param {string} kind */
   form(kind) {
-    /** @type {Record<string, string>} */
-    const draft = {};
-    const send = (/** @type {boolean} */ dry) => this.take({ kind, ...draft, dry }, kind);
-    const files = FILES[kind].map(({ file, needed, key, accept }) => {
+    /** @type {Draft} */
+    const draft = { files: {}, keys: {} };
+    const files = FILES[kind].map(({ text, needed, key, accept }) => {
       const input = make("input", { type: "file", accept, id: `${kind}-${key}`, required: needed });
-      input.addEventListener("change", () => void this.fetchFile(input, key, draft, kind, send));
-      return make("label", { class: "field" }, make("span", {}, file), input);
+      input.addEventListener("change", () => void this.fetchFile(input, key, draft, kind));
+      return make("label", { class: "field" }, make("span", {}, text), input);
     });
-    const words = (/** @type {string} */ key) => (/** @type {string} */ value) => {
-      if (value) draft[key] = value;
-      else delete draft[key];
-      if (draft.file) void send(true);
+    const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
+      if (value) draft.keys[key] = value;
+      else delete draft.keys[key];
+      if (this.ready(kind, draft)) void this.take(asked(kind, draft, true), kind);
     };
     put(part(`start-${kind}`), ...files,
-      choiceField("Unit of the foam", "", UNITS, words("unit"), { id: `${kind}-unit` }),
-      choiceField("Its upward axis", "", UPS, words("up"), { id: `${kind}-up` }),
-      kind === "pattern" ? choiceField("Unit of the pattern", "", UNITS, words("units"), { id: "pattern-units" }) : null,
+      kind === "pattern" ? choiceField("Unit of the pattern", "", UNITS, set("units"), { id: "pattern-units" }) : null,
+      choiceField("Unit of the foam", "", UNITS, set("unit"), { id: `${kind}-unit` }),
+      choiceField("Its upward axis", "", UPS, set("up"), { id: `${kind}-up` }),
+      kind === "pattern" ? choiceField("Letters of its names", "", ENCODINGS, set("encoding"), { id: "pattern-encoding" }) : null,
       make("div", { id: `seen-${kind}`, "aria-live": "polite" }),
-      press("Take it", () => void send(false), { id: `${kind}-take`, class: "main", disabled: true }));
+      press("Take it", () => void this.take(asked(kind, draft, false), kind), { id: `${kind}-take`, class: "main", disabled: true }));
+  }
+
+  /** @param {string} kind @param {Draft} draft */
+  ready(kind, draft) {
+    return FILES[kind].every((one) => !one.needed || draft.files[one.key]);
   }
 
   /**
-   * Bring a file to the server and look at all that there is.
+   * Bring a file to the server and, once all that is needed is there, say what would be read.
    * @param {HTMLInputElement} input
    * @param {string} key
-   * @param {Record<string, string>} draft
+   * @param {Draft} draft
    * @param {string} kind
-   * @param {(dry: boolean) => Promise<void>} send
    */
-  async fetchFile(input, key, draft, kind, send) {
+  async fetchFile(input, key, draft, kind) {
     const file = input.files?.[0];
     if (!file) return;
     this.say(kind, `Reading ${file.name}…`);
     try {
-      draft[key] = (await upload(file)).path;
+      draft.files[key] = (await upload(file)).path;
     } catch (problem) {
       this.say(kind, problem instanceof Refusal ? problem.message : `${file.name} did not reach the server.`, true);
       return;
     }
-    const ready = FILES[kind].every((one) => !one.needed || draft[one.key]);
+    const ready = this.ready(kind, draft);
     find(`${kind}-take`, HTMLButtonElement).disabled = !ready;
-    await send(true);
+    if (ready) await this.take(asked(kind, draft, true), kind);
+    else this.say(kind, `${file.name} is here.`);
   }
 
   /** @param {string} kind @param {string} text @param {boolean} [bad] */
@@ -104,7 +108,7 @@ export class StartRoom {
   /** @param {Record<string, any>} asked @param {string} kind */
   async take(asked, kind) {
     this.say(kind, asked.dry ? "Looking at it…" : "Making the folder…");
-    /** @type {Draft} */
+    /** @type {Seen & import("../types.js").State} */
     let seen;
     try {
       seen = await tell("/api/start", asked);
@@ -117,7 +121,7 @@ export class StartRoom {
       return;
     }
     this.say(kind, "");
-    await this.store.load();
+    this.store.take(seen);
     this.opened();
   }
 }
@@ -125,15 +129,23 @@ export class StartRoom {
 /** @param {{what: string, reason: string}} row */
 const leftOutRow = ({ what, reason }) => make("li", {}, make("strong", {}, what), `: ${reason}`);
 
-/** What a dry run says, as a list. @param {Draft} seen */
-function seenRows(seen) {
-  const rows = [];
-  for (const [name, value] of Object.entries(seen.said ?? seen.seen ?? {})) {
-    rows.push(make("dt", {}, name.replaceAll("_", " ")), make("dd", {}, Array.isArray(value) ? value.join(", ") : String(value)));
-  }
-  const out = seen.left_out ?? [];
+/** @param {string} kind @param {Draft} draft @param {boolean} dry whether it is only looked at */
+const asked = (kind, draft, dry) => ({ kind, files: draft.files, ...draft.keys, dry });
+
+/** What would be taken, and what would not. @param {Seen} seen */
+function seenRows({ notes, sizes, left_out: out }) {
+  const rows = Object.entries(sizes ?? {}).flatMap(([name, value]) => [
+    make("dt", {}, name.replaceAll("_", " ")), make("dd", {}, sizeWords(value)),
+  ]);
   return [
     make("dl", {}, ...rows),
-    out.length ? make("div", {}, make("p", {}, "Left out of the file:"), make("ul", {}, ...out.map(leftOutRow))) : null,
-  ].filter((one) => one !== null);
+    ...(notes ?? []).map((note) => make("p", {}, note)),
+    ...(out?.length ? [make("p", {}, "Left out of the file:"), make("ul", { class: "left-out" }, ...out.map(leftOutRow))] : []),
+  ];
+}
+
+/** @param {unknown} value @returns {string} */
+function sizeWords(value) {
+  if (Array.isArray(value)) return value.map(sizeWords).join(" x ");
+  return typeof value === "number" ? String(Number(value.toPrecision(5))) : String(value);
 }
