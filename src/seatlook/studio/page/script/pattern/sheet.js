@@ -127,7 +127,7 @@ export class Sheet {
     // The outline runs counter-clockwise: inside is on its left.
     const inward = [-(b[1] - a[1]) / long, (b[0] - a[0]) / long];
     return draw("polyline", {
-      points: this.text(ring.panel.name, [at, [at[0] + 6 * inward[0], at[1] + 6 * inward[1]]]), class: "notch",
+      points: this.text(ring.panel.name, [at, [at[0] + 9 * inward[0], at[1] + 9 * inward[1]]]), class: "notch",
     });
   }
 
