@@ -9,7 +9,6 @@ import pytest
 from seatlook import io
 from seatlook.assembly import with_mesh
 from seatlook.assembly.digest import content_digest
-from seatlook.chain import local
 from seatlook.chain.case import Case
 from seatlook.chain.local import (
     BEFORE,
@@ -22,6 +21,7 @@ from seatlook.chain.local import (
     with_error,
     with_scatter,
 )
+from seatlook.chain.local import solve as local_solve
 from seatlook.errors import InputError
 from seatlook.results.resolution import ASKED, CURVATURE_ERROR, REACHED
 from seatlook.solver import foam_wavelength
@@ -173,7 +173,7 @@ def test_a_mesh_that_misses_its_tolerance_is_left_for_a_finer_one(missed, monkey
         tried.append((len(fine.cover.rest), result.figures[REACHED]))
         return result
 
-    monkeypatch.setattr(local, "with_error", watched)
+    monkeypatch.setattr(local_solve, "with_error", watched)
     solution = solve_scene(missed)
     vertices, errors = zip(*tried, strict=True)
     assert len(tried) >= 2
@@ -181,7 +181,7 @@ def test_a_mesh_that_misses_its_tolerance_is_left_for_a_finer_one(missed, monkey
     assert all(error > 0.05 for error in errors[:-1])
     assert errors[-1] == solution.figures[REACHED] <= 0.05
     # However badly it is missed, the last mesh is the answer and says so.
-    monkeypatch.setattr(local, "_MESHES", 1)
+    monkeypatch.setattr(local_solve, "_MESHES", 1)
     assert solve_scene(missed).figures[REACHED] > 0.05
 
 

@@ -18,6 +18,8 @@ SURE = 0.95  # of single solves that differ from the mean of all seeds by less t
 ORDERS = (1.0, 2.0)  # between which means converge: of a kink, and of a smooth wave
 _CAUTION = 0.4  # by which an observed order is taken lower: scatter makes it uncertain
 SEEDS = 5  # that tell the scatter
+APART = 1.3  # times as large elements, from which a difference of two meshes is one of sizes
+_ORDER = 1.5  # of two meshes' means: 2 where there are waves, 1 at the kink of a hooked seam
 _SEEDS = "scatter_seeds"  # figure of a result
 _POWER = 0.8  # chance to see a difference that is there, of the number of seeds
 
@@ -112,6 +114,40 @@ def mesh_errors(
         if math.isnan(away[zone]):
             result[zone] = math.nan
     return result
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TwoMeshes:
+    """What two meshes found in a zone.
+
+    Parameters
+    ----------
+    mean, before : W2 [1] on the finer and on the coarser mesh; ``before`` is nan without a face
+    ratio : of the element sizes [1] where the zone wrinkles, coarser over finer
+    estimate : error [1] of waves as short as the fabric makes them, relative to the mean
+    """
+
+    zone: str
+    mean: float
+    before: float
+    ratio: float
+    estimate: float
+
+
+def two_mesh_errors(zones: Sequence[TwoMeshes]) -> dict[str, float]:
+    """Error of the mean W2 of each zone of a mesh, from one that is coarser where it wrinkles.
+
+    A zone errs by the difference of its means, extrapolated. Where both meshes are alike, as they
+    are where little wrinkles, it errs by the estimate that sized them. A mean that falls errs by no
+    more than itself, since W2 is nowhere below zero.
+    """
+    errors = {}
+    for zone in zones:
+        errors[zone.zone] = zone.estimate * zone.mean
+        if zone.ratio >= APART and math.isfinite(zone.before):
+            rise = (zone.mean - zone.before) / (zone.ratio**_ORDER - 1.0)
+            errors[zone.zone] = rise if rise >= 0.0 else min(-rise, zone.mean)
+    return errors
 
 
 def scatter(seeds: Sequence[Sequence[ZoneRow]], row: ZoneRow) -> float:
