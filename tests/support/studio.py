@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import http.client
 import json
+import resource
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator, Mapping
@@ -11,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qs, urlsplit
 
 import uvicorn
 
@@ -96,3 +100,28 @@ def studio(folder: Path) -> Iterator[tuple[Door, Client]]:
         finally:
             server.should_exit = True
             thread.join(10)
+
+
+@contextmanager
+def studio_process(
+    folder: Path, *, largest_file: int | None = None
+) -> Iterator[tuple[Any, Client]]:
+    """Serve a folder by the command, in a process of its own that can be killed."""
+
+    def limited() -> None:
+        if largest_file is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
+
+    words = [sys.executable, "-m", "seatlook", "studio", str(folder), "--no-browser"]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True, preexec_fn=limited)
+    try:
+        assert process.stdout is not None
+        address = next(word for line in process.stdout for word in line.split() if "token=" in word)
+        where = urlsplit(address)
+        assert where.port is not None
+        yield process, let_in(where.port, parse_qs(where.query)["token"][0])
+    finally:
+        process.kill()
+        process.wait()
+        if process.stdout is not None:
+            process.stdout.close()

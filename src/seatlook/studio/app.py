@@ -15,6 +15,7 @@ from starlette.routing import Route
 
 from seatlook.errors import InputError, SeatlookError
 from seatlook.studio.guard import Door, Guard
+from seatlook.studio.picking import partner
 from seatlook.studio.session import Clash, Session
 from seatlook.studio.shell import page
 from seatlook.studio.state import problem_values
@@ -33,6 +34,9 @@ def make_app(session: Session, door: Door) -> Starlette:
         Route("/", _page),
         Route("/api/state", _answering(_state)),
         Route("/api/edit", _answering(_edit), methods=["POST"]),
+        Route("/api/partner", _answering(_partner), methods=["POST"]),
+        Route("/api/undo", _answering(_undo), methods=["POST"]),
+        Route("/api/redo", _answering(_redo), methods=["POST"]),
     ]
     app = Starlette(routes=routes, middleware=[Middleware(Guard, door=door)])
     app.state.session = session
@@ -54,6 +58,27 @@ async def _edit(request: Request) -> Response:
     if not isinstance(edits, list) or not edits:
         raise InputError.single("edits", got=repr(edits)[:60], expected="a list of edits")
     return answer(await run_in_threadpool(session_of(request).edit, asked.get("base"), edits))
+
+
+async def _partner(request: Request) -> Response:
+    asked = await posted(request)
+    first, second = asked.get("first"), asked.get("second")
+    if not isinstance(first, dict) or not isinstance(second, dict):
+        raise InputError.single("partner", got=repr(asked)[:60], expected="first and second")
+    reading = await run_in_threadpool(session_of(request).reading)
+    if reading.pattern is None:
+        raise InputError(reading.problems)
+    return answer(partner(reading.pattern, first, second))
+
+
+async def _undo(request: Request) -> Response:
+    asked = await posted(request)
+    return answer(await run_in_threadpool(session_of(request).undo, asked.get("base")))
+
+
+async def _redo(request: Request) -> Response:
+    asked = await posted(request)
+    return answer(await run_in_threadpool(session_of(request).redo, asked.get("base")))
 
 
 def session_of(request: Request) -> Session:

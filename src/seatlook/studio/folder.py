@@ -9,11 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from seatlook.errors import InputError
-from seatlook.files import LARGEST_TEXT, read_file
+from seatlook.files import LARGEST_TEXT, read_file, state_of
 
 OWN = ".seatlook"  # folder of the journal and of what was refused
 REFUSED = f"{OWN}/refused.toml"
 SCENE = "scene.toml"
+MATERIALS = "materials"  # of the folder, in their own folder
+
+_MOST_MATERIALS = 100
 
 Contents = Mapping[str, bytes]  # path seen from the folder -> what the file holds
 
@@ -65,11 +68,26 @@ class Folder:
                 continue
         return found
 
+    @property
+    def signature(self) -> str:
+        """What tells whether files that are read, but not changed by clicks, are others now."""
+        scene = self.scene
+        if scene is None:
+            return ""
+        data = parsed(read_file(self.root / scene, at_most=LARGEST_TEXT))
+        names = [_text(data, table, "file") for table in ("pattern", "foam", "design")]
+        paths = [self.root / name for name in names if name is not None]
+        return repr([state_of(path) for path in [*paths, *sorted(self.root.glob("*.toml"))[:200]]])
+
     def _named(self, scene: str) -> list[str]:
         """Files of seams and curves that a scene names, of those inside the folder."""
         data = parsed(read_file(self.root / scene, at_most=LARGEST_TEXT))
         names = [_text(data, "pattern", "seams"), _text(data, "foam", "curves")]
-        return [name for name in names if name is not None]
+        own = sorted((self.root / MATERIALS).glob("*.toml"))
+        return [
+            *(name for name in names if name is not None),
+            *(path.relative_to(self.root).as_posix() for path in own[:_MOST_MATERIALS]),
+        ]
 
 
 def parsed(content: bytes) -> dict[str, Any]:
@@ -80,9 +98,9 @@ def parsed(content: bytes) -> dict[str, Any]:
         return {}
 
 
-def etag(contents: Contents) -> str:
+def etag(contents: Contents, more: str = "") -> str:
     """What tells one state of the files from another."""
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(more.encode())
     for name, content in sorted(contents.items()):
         digest.update(f"{len(name)} {name} {len(content)} ".encode())
         digest.update(content)

@@ -31,7 +31,6 @@ def state_values(folder: Folder, contents: Contents, scene: str | None, reading:
     pattern = reading.pattern
     refused = parsed(contents.get(REFUSED, b"")).get("refused", [])
     return {
-        "etag": etag(contents),
         "folder": str(folder.root),
         "scene": scene,
         "has_scene": scene is not None,

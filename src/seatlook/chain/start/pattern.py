@@ -36,7 +36,7 @@ from seatlook.io.pattern.dxf import Reading
 from seatlook.io.pattern.units import Units
 from seatlook.io.surface.axes import Unit, Up
 from seatlook.mesh.mending.mend import AS_IT_IS, Mending
-from seatlook.model import FloatArray, Hook, Pattern
+from seatlook.model import FloatArray, Foam, Frame, Hook, Pattern
 
 SEAMS = "seams.toml"
 _NEAREST_WIRE = 0.08  # m from a seam to the wire it may be hooked to
@@ -124,12 +124,11 @@ def init(
         wires=choices.get("wires"),
         mending=choices.get("mending", AS_IT_IS),
     )
-    layout = lay_out(
+    arrangement = arrange(
         proposal.pattern,
         filling.body,
-        first=choices.get("top"),
+        top=choices.get("top"),
         turn_deg=choices.get("turn_deg", 0.0),
-        partial=True,
     )
     if own_seams is None:
         io.write_seams(
@@ -137,7 +136,7 @@ def init(
             notes=seam_notes(proposal), remarks=doubtful_seams(proposal),
         )  # fmt: skip
     files = cut, folder / SEAMS if own_seams is None else own_seams
-    draft = _draft(files, proposal.pattern, layout, filling, choices)
+    draft = _draft(files, arrangement, filling, choices)
     return FirstScene(
         scene=write_scene(draft, folder),
         proposal=proposal,
@@ -147,20 +146,54 @@ def init(
             *filling.notes,
             *scale_notes(proposal.pattern, filling.body),
         ),
-        missing=what_is_missing(proposal, layout),
+        missing=what_is_missing(proposal, arrangement.layout),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Arrangement:
+    """Where panels start and what is tied to what, as far as it follows from seams and foam.
+
+    Parameters
+    ----------
+    hooks : seams that lie beside wires
+    frames : free borders and the curves they are pulled to
+    curves : name -> (k, 3) [m], of the frames
+    """
+
+    layout: Layout
+    hooks: tuple[Hook, ...]
+    frames: tuple[Frame, ...]
+    curves: Mapping[str, FloatArray]
+
+
+def arrange(
+    pattern: Pattern, foam: Foam, *, top: str | None = None, turn_deg: float = 0.0
+) -> Arrangement:
+    """Lay a sewn pattern out over a foam, hook what lies beside wires, and frame the borders.
+
+    Parameters
+    ----------
+    top : the panel on top, turned by ``turn_deg``
+    """
+    layout = lay_out(pattern, foam, first=top, turn_deg=turn_deg, partial=True)
+    lines = {seam.name: _placed(pattern, seam.a, layout) for seam in pattern.seams}
+    return Arrangement(
+        layout=layout,
+        hooks=hooks_beside(lines, foam.curves, reach=_NEAREST_WIRE, stage=HOOK),
+        frames=tuple(border.frame(COVER) for border in layout.borders),
+        curves={border.name: border.curve for border in layout.borders},
     )
 
 
 def _draft(
     files: tuple[Path, Path],
-    pattern: Pattern,
-    layout: Layout,
+    arrangement: Arrangement,
     foam: FoamFile,
     choices: StartChoices,
 ) -> SceneDraft:
     """What the scene of a pattern and its seams file is written from."""
     material = choices.get("material", MATERIAL)
-    lines = {seam.name: _placed(pattern, seam.a, layout) for seam in pattern.seams}
     return SceneDraft(
         name=files[0].stem,
         pattern=files[0],
@@ -176,10 +209,10 @@ def _draft(
         guessed=choices.get("seams") is None,
         material=material,
         foam=foam,
-        curves={border.name: border.curve for border in layout.borders},
-        hooks=hooks_beside(lines, foam.body.curves, reach=_NEAREST_WIRE, stage=HOOK),
-        frames=tuple(border.frame(COVER) for border in layout.borders),
-        poses=layout.poses,
+        curves=arrangement.curves,
+        hooks=arrangement.hooks,
+        frames=arrangement.frames,
+        poses=arrangement.layout.poses,
         element_size_mm=element_size(io.read_material(material).fabric, foam.body.material),
     )
 

@@ -6,8 +6,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from seatlook.errors import InputError, did_you_mean
-from seatlook.studio.edits import seams
+from seatlook.studio.edits import arrange, scene, seams
 from seatlook.studio.edits.draft import Draft, Edit
+
+TABLES = ("camera", "gallery", "mesh", "wrinkle", "improve", "check", "pattern", "foam", "thread")
+ROWS = ("stage", "hook", "frame", "rig")
 
 KINDS: dict[str, Callable[[Draft, Edit], None]] = {
     "seam.add": seams.add,
@@ -16,6 +19,17 @@ KINDS: dict[str, Callable[[Draft, Edit], None]] = {
     "seam.rename": seams.rename,
     "seam.set": seams.change,
     "guess.accept": seams.accept,
+    "guess.refuse": scene.refuse_guess,
+    "panel.set": scene.set_panel,
+    "pose.set": scene.set_pose,
+    "wire.set": scene.set_wire,
+    "material.copy": scene.copy_material,
+    "material.set": scene.set_material,
+    "scene.arrange": arrange.arrange,
+    **{f"{table}.set": scene.set_in_table(table) for table in TABLES},
+    **{f"{table}.set": scene.set_in_row(table) for table in ROWS},
+    **{f"{table}.add": scene.add_to(table) for table in ROWS},
+    **{f"{table}.remove": scene.remove_from(table) for table in ROWS},
 }
 
 
@@ -38,7 +52,11 @@ def make(draft: Draft, edits: Sequence[Any]) -> None:
             )  # fmt: skip
         try:
             KINDS[kind](draft, edit)
-        except (KeyError, IndexError, TypeError) as error:
+        except InputError:
+            raise
+        except (KeyError, IndexError, TypeError, ValueError) as error:
+            if draft.reading.problems:
+                raise InputError(draft.reading.problems) from error
             raise InputError.single(
                 f"edits[{number}]", got=f"{type(error).__name__}: {error}", expected=f"a {kind}"
             ) from error

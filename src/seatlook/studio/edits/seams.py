@@ -12,8 +12,9 @@ from seatlook.io.toml_edit import add_row, add_table, drop, put
 from seatlook.model import Panel, Pattern
 from seatlook.studio.edits.draft import Draft, Edit, Gone, wanted
 from seatlook.studio.pattern_state import guess_values, millimetres, steps_of
+from seatlook.studio.picking import nearest_corner, panel_of, place_of, stretch_between
 
-_SNAP_MM = 2.0  # as far as the seams file is read
+_SNAP = 0.002  # m, as far as the seams file is read
 
 
 def add(draft: Draft, edit: Edit) -> None:
@@ -128,53 +129,38 @@ def _edges(draft: Draft, side: Mapping[str, Any], name: str) -> list[str]:
     if isinstance(points, list) and len(points) > 1:
         parts = [{"panel": side.get("panel"), **_ends(part)} for part in points]
         return [edge for part in parts for edge in _edges(draft, part, name)]
-    panel = _panel(pattern, side.get("panel"), name)
     if isinstance(points, list) and len(points) == 1:
         side = {**side, **_ends(points[0])}
-    ends = [_corner(panel, side.get(key), f"{name}.{key}") for key in ("from_mm", "to_mm")]
+    panel = panel_of(pattern, side.get("panel"))
+    ends = [_corner(panel, side, key) for key in ("from_mm", "to_mm")]
+    if ends[0] == ends[1]:
+        raise InputError.single(f"{name}.to_mm", got="the place of from_mm", expected="another")
+    via = place_of(side, "via_mm") if "via_mm" in side else None
+    stretch = stretch_between(panel, ends, via).along
     for edge in pattern.edges.values():
-        if edge.panel == panel.name and [edge.start, edge.end] in (ends, ends[::-1]):
+        if edge.panel == panel.name and (edge.start, edge.end) == stretch:
             return [edge.name]
-    return [_new_edge(draft, panel, ends)]
+    return [_new_edge(draft, panel, stretch)]
 
 
 def _ends(points: Any) -> dict[str, Any]:
-    return {"from_mm": points[0], "to_mm": points[-1]}
+    return {"from_mm": points[0], "to_mm": points[-1], "via_mm": points[len(points) // 2]}
 
 
-def _panel(pattern: Pattern, name: object, side: str) -> Panel:
-    for panel in pattern.panels:
-        if panel.name == name:
-            return panel
-    expected = f"one of {', '.join(panel.name for panel in pattern.panels)}"
-    raise InputError.single(f"{side}.panel", got=repr(name), expected=expected)
-
-
-def _corner(panel: Panel, place: object, key: str) -> int:
+def _corner(panel: Panel, side: Mapping[str, Any], key: str) -> int:
     """Corner of a panel at a place [mm]."""
-    try:
-        point = np.array(place, dtype=np.float64).reshape(2)
-    except (TypeError, ValueError):
-        raise InputError.single(key, got=repr(place), expected="a place [x, y] in mm") from None
-    away = np.hypot(*(1e3 * panel.outline[panel.corners] - point).T)
-    if not len(away) or not away.min() <= _SNAP_MM:
+    corner, away = nearest_corner(panel, place_of(side, key))
+    if away > _SNAP:
         raise InputError.single(
-            key, got=repr(place), expected=f"a corner or turn point of {panel.name}"
+            key, got=repr(side[key]), expected=f"a corner or turn point of {panel.name}"
         )
-    return int(panel.corners[away.argmin()])
+    return corner
 
 
-def _new_edge(draft: Draft, panel: Panel, ends: Sequence[int]) -> str:
-    """Name the shorter way round a panel between two corners.
-
-    Two lines of a pattern are picked in either direction; edges run as outlines do.
-    """
-    n = len(panel.outline)
-    steps = np.linalg.norm(np.roll(panel.outline, -1, axis=0) - panel.outline, axis=1)
-    ways = [steps[(a + np.arange((b - a) % n or n)) % n].sum() for a, b in (ends, ends[::-1])]
-    start, end = ends if ways[0] <= ways[1] else ends[::-1]
-    places = millimetres(panel.outline[[start, end]])
-    name = _edge_name(draft.pattern, panel, (start, end))
+def _new_edge(draft: Draft, panel: Panel, ends: tuple[int, int]) -> str:
+    """Name a stretch of a panel that has no name yet."""
+    places = millimetres(panel.outline[list(ends)])
+    name = _edge_name(draft.pattern, panel, ends)
     row = {"panel": panel.name, "from_mm": places[0], "to_mm": places[1]}
     draft.change(draft.named("pattern", "seams"), lambda text: add_table(text, ("edge", name), row))
     return name
