@@ -33,21 +33,40 @@ async function answerOf(response) {
   return body;
 }
 
+let waiting = 0;
+
+/**
+ * Send, and say on the page that an answer is waited for.
+ * @param {string} path
+ * @param {RequestInit} request
+ */
+async function send(path, request) {
+  waiting += 1;
+  document.body.dataset.busy = "yes";
+  try {
+    return await answerOf(await fetch(path, request));
+  } finally {
+    waiting -= 1;
+    // What follows at once from an answer is waited for as well.
+    setTimeout(() => { if (waiting === 0) document.body.dataset.busy = "no"; });
+  }
+}
+
 /** @param {string} path */
 export async function ask(path) {
-  return answerOf(await fetch(path, { headers: { Accept: "application/json" } }));
+  return send(path, { headers: { Accept: "application/json" } });
 }
 
 /** @param {string} path @param {unknown} body */
 export async function tell(path, body) {
-  return answerOf(await fetch(path, {
+  return send(path, {
     method: "POST", headers: { "Content-Type": "application/json", "X-Seatlook": "1" }, body: JSON.stringify(body),
-  }));
+  });
 }
 
 /** @param {File} file @returns {Promise<{path: string}>} */
 export async function upload(file) {
-  return answerOf(await fetch(`/api/upload?name=${encodeURIComponent(file.name)}`, {
+  return send(`/api/upload?name=${encodeURIComponent(file.name)}`, {
     method: "POST", headers: { "Content-Type": "application/octet-stream", "X-Seatlook": "1" }, body: file,
-  }));
+  });
 }

@@ -72,8 +72,11 @@ class Studio {
   /** @param {State} state */
   show(state) {
     part("folder").textContent = state.folder ?? "no folder";
-    find("undo", HTMLButtonElement).disabled = !state.undo;
-    find("redo", HTMLButtonElement).disabled = !state.redo;
+    for (const way of /** @type {const} */ (["undo", "redo"])) {
+      const words = state[way];
+      find(way, HTMLButtonElement).disabled = !words;
+      find(way, HTMLButtonElement).title = typeof words === "string" ? words : "";
+    }
     put(part("errors-list"), ...state.errors.map(({ file, line, text }) => make("li", {},
       make("strong", {}, [file, line ? `line ${line}` : ""].filter(Boolean).join(", ")), ` ${text}`)));
     part("errors").hidden = state.errors.length === 0;

@@ -14,8 +14,7 @@
  *   rivals?: string[], lengths_mm?: [number, number]}} Guess */
 /** @typedef {{name: string, start_s: number, end_s: number, group?: string | null, ramp?: string | null,
  *   seams?: string[]}} Stage */
-/** @typedef {{panel: string, start: Place, end: Place}} Picked */
-/** @typedef {{first: Picked, second: Picked, lengths_mm: [number, number], ease_percent: number,
+/** @typedef {{first: Record<string, any>, second: Record<string, any>, reverse: boolean, lengths_mm: [number, number], ease_percent: number,
  *   rivals?: any[], warnings?: string[]}} Partner */
 /** @typedef {{name: string, title: string, swatch_url?: string | null, source?: string}} MaterialCard */
 /** @typedef {{run: string, command?: string, path?: string, status: string, page_url?: string | null,

@@ -54,11 +54,10 @@ function guessRow(store, guess, way) {
   return make("li", { class: "guess-row", mouseenter: light, focusin: light, mouseleave: () => way.light(null) },
     make("span", { class: `number sure${probability >= way.bound ? "" : " weak"}` }, percent),
     make("span", { class: "name" }, name),
-    make("span", { class: "figures" }, lengths ? `${lengths[0].toFixed(1)} to ${lengths[1].toFixed(1)} mm` : ""),
     make("span", { class: "acts" },
       press("Accept", () => void store.edit([{ kind: "guess.accept", id }], `${name} is sewn.`),
         { "data-key": `accept ${id}`, "aria-label": `Accept ${name}, ${percent}` }),
       press("Refuse", () => void store.edit([{ kind: "guess.refuse", id }], `${name} is refused.`),
         { "data-key": `refuse ${id}`, "aria-label": `Refuse ${name}` })),
-    make("span", { class: "why" }, reason, rivals?.length ? ` Also possible: ${rivals.join("; ")}.` : ""));
+    make("span", { class: "why" }, reason || (lengths ?? []).map((x) => `${x.toFixed(1)} mm`).join(" and "), rivals?.length ? ` Also possible: ${rivals.join("; ")}.` : ""));
 }

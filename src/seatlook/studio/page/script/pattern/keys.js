@@ -57,10 +57,10 @@ export class Cursor {
   get words() {
     const { ring, pick } = this;
     if (!ring || !pick) return "";
-    const { kind, place } = ring.stops[this.stop % ring.stops.length];
+    const { place } = ring.stops[this.stop % ring.stops.length];
     const edge = ring.edgeAt(pick.arc);
     const begins = edge && apart(edge.points_mm[0], place) < 1 ? `${edge.name} begins here, ${edge.length_mm.toFixed(1)} mm` : "";
-    return [`${ring.panel.name}, ${kind} ${this.stop + 1} of ${ring.stops.length}, ${wayOf(ring, place)}`, begins]
+    return [`${ring.panel.name}, corner ${this.stop + 1} of ${ring.stops.length}, ${wayOf(ring, place)}`, begins]
       .filter(Boolean).join("; ");
   }
 }

@@ -1,8 +1,8 @@
-// The outline of a panel as a closed line, with the places on it that a pick is drawn to.
+// The outline of a panel as a closed line, with the corners that a pick is drawn to.
 
 /** @typedef {import("../types.js").Panel} Panel */
 /** @typedef {import("../types.js").Place} Place */
-/** @typedef {{arc: number, place: Place, kind: "corner" | "notch"}} Stop */
+/** @typedef {{arc: number, place: Place}} Stop a corner, where an edge can end */
 
 const APART = 0.5;  // mm within which two stops are one
 
@@ -56,12 +56,7 @@ export class Ring {
     const all = [];
     const ends = this.panel.edges.flatMap(({ points_mm: points }) => [points[0], points[points.length - 1]]);
     for (const place of [...this.panel.corners_mm, ...ends]) {
-      all.push({ arc: this.nearest(place).arc, place, kind: "corner" });
-    }
-    for (const edge of this.panel.edges) {
-      for (const notch of edge.notches ?? []) {
-        all.push({ arc: this.nearest(notch.point_mm).arc, place: notch.point_mm, kind: "notch" });
-      }
+      all.push({ arc: this.nearest(place).arc, place });
     }
     all.sort((a, b) => a.arc - b.arc);
     const kept = all.filter((stop, k) => k === 0 || apart(stop.place, all[k - 1].place) > APART);

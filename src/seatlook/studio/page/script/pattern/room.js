@@ -11,10 +11,10 @@ import { percentWords, seamList } from "./seams.js";
 
 /** @typedef {import("../store.js").Store} Store */
 /** @typedef {import("../types.js").Partner} Partner */
-/** @typedef {import("../types.js").Picked} Picked */
 /** @typedef {import("./sheet.js").Pick} Pick */
 
 const PAN = 0.1;
+const MOST = 10;  // % by which two sides of a seam may differ, as everywhere
 
 export class PatternRoom {
   /** @param {Store} store */
@@ -97,13 +97,17 @@ export class PatternRoom {
   /** @param {Pick | null} pick */
   hover(pick) {
     const keyboard = document.activeElement === this.svg ? this.cursor.pick : null;
-    this.point(pick ?? keyboard);
+    this.point(pick ? this.sewing.settled(pick) : keyboard);
     const edge = pick && this.sheet.rings.get(pick.panel)?.edgeAt(pick.arc);
     part("sheet-here").textContent = edge ? `${edge.name}, ${edge.length_mm.toFixed(1)} mm` : "";
   }
 
-  /** @param {Pick} pick */
-  pick(pick) {
+  /** @param {Pick} near where it was clicked */
+  pick(near) {
+    // While an answer is waited for there is nothing to pick; after a doubt the last pick is made anew.
+    if (this.sewing.step === 4 && !this.doubt) return;
+    if (this.doubt) this.back();
+    const pick = this.sewing.settled(near);
     const objection = this.sewing.objection(pick);
     if (objection) {
       this.store.voice.say(objection, true);
@@ -144,32 +148,32 @@ export class PatternRoom {
     if (partner.warnings?.length) {
       this.doubt = partner;
       this.showSteps();
-      part("sew-anyway").focus();
+      part("sew-doubt").querySelector("button")?.focus();
     } else await this.join(partner);
   }
 
   /** @param {Partner} partner */
-  async join({ first, second, lengths_mm: [a, b], ease_percent: ease }) {
+  async join({ first, second, reverse, lengths_mm: [a, b], ease_percent: ease }) {
     this.doubt = null;
     this.sewing.clear();
     this.showSteps();
     const words = `Sewn: ${a.toFixed(1)} mm to ${b.toFixed(1)} mm, ease ${percentWords(ease)}.`;
-    await this.store.edit([{ kind: "seam.add", first, second }], words);
+    await this.store.edit([{ kind: "seam.add", first, second, reverse }], words);
     if (document.activeElement === this.svg) this.point(this.cursor.pick);
   }
 
   showSteps() {
     const { step } = this.sewing;
-    put(part("sew-steps"), ...STEPS.map((text, k) => make("li", {
-      class: k < step ? "done" : k === step ? "now" : "", "aria-current": k === step ? "step" : null,
-    }, text)));
+    const now = Math.min(step, STEPS.length - 1);
+    put(part("sew-step"), make("strong", {}, `${now + 1} of 4 `), STEPS[now]);
     put(part("sew-acts"),
       step > 0 && press("Take back the pick", () => this.back(), { "data-key": "back" }),
       step === 2 && press("Other way round", () => this.turnAround(), { "data-key": "around" }),
       step > 0 && press("Begin anew", () => this.cancel(), { "data-key": "cancel" }));
     const { doubt } = this;
+    part("sew-doubt").hidden = doubt === null;
     put(part("sew-doubt"), doubt && make("p", {}, `${doubt.lengths_mm[0].toFixed(1)} mm to ${doubt.lengths_mm[1].toFixed(1)} mm. ${(doubt.warnings ?? []).join(" ")}`),
-      doubt && press("Sew it all the same", () => { void this.join(doubt); this.svg.focus(); }, { id: "sew-anyway" }),
+      doubt && Math.abs(doubt.ease_percent) <= MOST && press("Sew it all the same", () => { void this.join(doubt); this.svg.focus(); }, { id: "sew-anyway" }),
       doubt && press("Take back the last pick", () => { this.back(); this.svg.focus(); }));
     this.showPicks();
   }

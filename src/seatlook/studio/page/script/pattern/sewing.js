@@ -12,7 +12,6 @@ export const STEPS = [
 ];
 
 const NEAR = 2;  // mm: two picks at one place are none
-const FIT = 0.06;  // of its length: a partner's end goes to a corner so near
 
 export class Sewing {
   /** @param {() => Map<string, Ring>} rings */
@@ -43,6 +42,11 @@ export class Sewing {
   back() {
     this.picks.pop();
     if (this.step < 2) this.around = false;
+  }
+
+  /** Where a pick is taken: seams begin and end at corners, a direction is any place. @param {Pick} pick @returns {Pick} */
+  settled(pick) {
+    return this.step === 3 ? pick : { ...pick, arc: this.ring(pick.panel).snapped(pick.arc, Infinity) };
   }
 
   /** Why a pick cannot be taken now, or nothing. @param {Pick} pick */
@@ -79,17 +83,18 @@ export class Sewing {
     return { panel: start.panel, from: start.arc, way: this.way(start, last, this.around) };
   }
 
-  /** The partner as it will be about; the server finds its end. @param {Pick | null} cursor */
+  /** The partner as it will be; the server has the last word. @param {Pick | null} cursor */
   second(cursor) {
     const first = this.first(null), start = this.picks[2];
     const toward = this.picks[3] ?? (cursor && this.step === 3 && !this.objection(cursor) ? cursor : null);
     if (!first || !start || !toward) return null;
     const ring = this.ring(start.panel);
     const sign = Math.sign(this.way(start, toward, false));
-    const length = Math.min(Math.abs(first.way), 0.98 * ring.length);
-    const end = ring.snapped(start.arc + sign * length, FIT * length);
-    const gone = ring.wrapped(sign * (end - start.arc));
-    return { panel: start.panel, from: start.arc, way: sign * gone };
+    // As the server finds it: the corner that is as far away as the first line is long.
+    const length = Math.abs(first.way);
+    const ways = ring.stops.map(({ arc }) => ring.wrapped(sign * (arc - start.arc))).filter((way) => way > NEAR);
+    ways.sort((a, b) => Math.abs(a - length) - Math.abs(b - length));
+    return ways.length ? { panel: start.panel, from: start.arc, way: sign * ways[0] } : null;
   }
 
   /** What the server is asked. */
@@ -97,7 +102,10 @@ export class Sewing {
     const [a, b, c, d] = this.picks;
     const place = (/** @type {Pick} */ pick) => this.ring(pick.panel).at(pick.arc);
     return {
-      first: { panel: a.panel, start: place(a), end: place(b), forward: this.way(a, b, this.around) > 0 },
+      first: {
+        panel: a.panel, start: place(a), end: place(b),
+        via: this.ring(a.panel).at(a.arc + this.way(a, b, this.around) / 2),
+      },
       second: { panel: c.panel, start: place(c), toward: place(d) },
     };
   }

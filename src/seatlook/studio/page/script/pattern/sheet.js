@@ -15,8 +15,8 @@ import { Window } from "./window.js";
 /** @typedef {{panel: string, points: Place[], look: string}} Mark a line laid over an outline */
 
 const COLOURS = 8;
+const NARROW = 600;  // px of a sheet on which letters are smaller
 const REACH = 28;  // px from an outline within which a click picks
-const SNAP = 14;  // px from a corner or notch within which it is taken
 
 /** @param {number} number of a seam */
 export const tintOf = (number) => `tint-${(number - 1) % COLOURS}`;
@@ -104,7 +104,7 @@ export class Sheet {
   panelOf(panel) {
     const { name } = panel;
     const ring = /** @type {Ring} */ (this.rings.get(name));
-    const group = draw("g", {}, draw("polygon", { points: this.text(name, ring.points), class: "panel" }));
+    const group = draw("g", { "data-panel": name }, draw("polygon", { points: this.text(name, ring.points), class: "panel" }));
     for (const hole of panel.holes_mm ?? []) group.append(draw("polygon", { points: this.text(name, hole), class: "hole" }));
     if (panel.cut_mm) group.append(draw("polygon", { points: this.text(name, panel.cut_mm), class: "cut" }));
     for (const line of panel.lines ?? []) {
@@ -114,8 +114,9 @@ export class Sheet {
       group.append(draw("polyline", { points: this.text(name, edge.points_mm), class: "edge" }));
     }
     if (panel.grain_mm) group.append(this.grain(panel, panel.grain_mm));
-    for (const stop of ring.stops) {
-      group.append(stop.kind === "corner" ? this.dot(name, stop.place, "corner") : this.notch(ring, stop.arc));
+    for (const { place } of ring.stops) group.append(this.dot(name, place, "corner"));
+    for (const { point_mm: place } of panel.edges.flatMap(({ notches }) => notches ?? [])) {
+      group.append(this.notch(ring, ring.nearest(place).arc));
     }
     return group;
   }
@@ -229,7 +230,8 @@ export class Sheet {
 
   /** Letters keep their size on the screen. */
   rescale() {
-    this.layers.labels.setAttribute("font-size", (13 * this.window.pixel).toFixed(3));
+    const size = this.svg.clientWidth < NARROW ? 10 : 13;
+    this.layers.labels.setAttribute("font-size", (size * this.window.pixel).toFixed(3));
   }
 
   /** @param {MouseEvent} event @returns {Pick | null} */
@@ -241,7 +243,7 @@ export class Sheet {
     for (const [panel, ring] of this.rings) {
       const shift = /** @type {Shift} */ (this.shifts.get(panel));
       const near = ring.nearest([place[0] - shift.x, shift.y - place[1]]);
-      if (near.away < away) [best, away] = [{ panel, arc: ring.snapped(near.arc, SNAP * pixel) }, near.away];
+      if (near.away < away) [best, away] = [{ panel, arc: near.arc }, near.away];
     }
     return best;
   }

@@ -1,0 +1,3 @@
+from support.browsers import browser
+
+__all__ = ["browser"]
