@@ -9,7 +9,7 @@ from seatlook.assembly import assemble
 from seatlook.chain.assess import assess
 from seatlook.errors import InputError, SolverError
 from seatlook.improvement.candidate import frozen_names
-from seatlook.improvement.corrected import CORRECTIONS, PATTERN, SEAMS, write_corrected
+from seatlook.improvement.corrected import CORRECTIONS, LENGTHS, PATTERN, SEAMS, write_corrected
 from seatlook.improvement.objective import Goal
 from seatlook.improvement.propose import propose
 from seatlook.improvement.ways import free_of
@@ -37,7 +37,7 @@ def test_the_spoilt_line_is_found_and_made_shorter(asked, tmp_path):
     assert -14 * MM < best.amount < -3 * MM
     assert best.share > 0.05
     files = write_corrected(scene, assessment.solution, found, tmp_path)
-    assert set(files) == {PATTERN, SEAMS, CORRECTIONS}
+    assert set(files) == {PATTERN, SEAMS, CORRECTIONS, LENGTHS}
     written = io.read_pattern(tmp_path / PATTERN, tmp_path / SEAMS)
     assert written.edges.keys() == scene.pattern.edges.keys()
     change = written.edge_length(LINE) - scene.pattern.edge_length(LINE)

@@ -90,10 +90,11 @@ def _loop(seat: Seat, out: Path, *, preview: bool, json: bool) -> int:
     """Improve until it ends, prove it, and write all of it."""
     from seatlook.chain.run_folder import run_folder
     from seatlook.improvement.corrected import WRITTEN_BY_LOOP
+    from seatlook.report.improvement_page import PAGE, PICTURES
     from seatlook.report.pattern_drawing import CHANGES_PNG, CHANGES_SVG
 
     steps: list[Iteration] = []
-    files = (*WRITTEN_BY_LOOP, CHANGES_SVG, CHANGES_PNG)
+    files = (*WRITTEN_BY_LOOP, CHANGES_SVG, CHANGES_PNG, *PICTURES, PAGE)
     with run_folder(out, writes=files), progress() as show:
         show("improve")
         for step in seat.improve():
@@ -124,7 +125,7 @@ def _rows(seat: Seat, step: Iteration) -> list[dict[str, object]]:
     from seatlook.improvement.changes import Changes
     from seatlook.improvement.corrected import rows_made
 
-    return rows_made(Changes(seat.solution, seat.scene.pattern), step.made)
+    return rows_made(Changes(seat.solution, seat.scene.pattern), step.made, step.chosen)
 
 
 def _summary(seat: Seat, steps: Sequence[Iteration], proof: Proof | None) -> dict[str, object]:
@@ -143,15 +144,26 @@ def _summary(seat: Seat, steps: Sequence[Iteration], proof: Proof | None) -> dic
 
 
 def _write(seat: Seat, steps: Sequence[Iteration], proof: Proof, out: Path) -> None:
-    """Write pattern, tables and drawing."""
+    """Write pattern, tables, drawing and page."""
     from seatlook.improvement.changes import Changes
-    from seatlook.improvement.corrected import write_improved
+    from seatlook.improvement.corrected import length_rows, write_improved
+    from seatlook.report.improvement_page import Corrected, write_improvement_page
     from seatlook.report.pattern_drawing import draw_changes
 
     changes = Changes(seat.solution, seat.scene.pattern)
     write_improved(changes, steps, proof, out)
-    after = changes.pattern(steps[-1].made)
-    draw_changes(seat.scene.pattern, after, _by_panel(changes, _rows(seat, steps[-1])), out)
+    after, rows = changes.pattern(steps[-1].made), _rows(seat, steps[-1])
+    draw_changes(seat.scene.pattern, after, _by_panel(changes, rows), out)
+    assert proof.corrected is not None
+    found = Corrected(
+        name=seat.scene.name,
+        seats=(seat.assessment, proof.corrected),
+        steps=steps,
+        proof=proof,
+        corrections=rows,
+        lengths=length_rows(seat.scene.pattern, after),
+    )
+    write_improvement_page(found, out, camera=seat.camera(None), rig=seat.rig(None))
 
 
 def _by_panel(changes: Changes, rows: Sequence[Mapping[str, object]]) -> dict[str, list[str]]:

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from seatlook.errors import InputError
-from seatlook.improvement.outline import Outline, Side
+from seatlook.improvement.cutting.outline import Outline, Side
 from seatlook.model import Cover, FloatArray, Scene
 from seatlook.model.scene import Freedom
 
@@ -135,3 +135,11 @@ def _place(side: Side, at: float) -> str:
         return "its end"
     near = np.flatnonzero(np.isclose(side.notches, at, atol=1e-6))
     return f"notch {near[0] + 1}" if len(near) else f"{1e3 * at:.0f} mm"
+
+
+def outline_way(outline: Outline, candidate: Candidate) -> FloatArray:
+    """How the vertices of an outline move for an amount of 1, (r, 2) [1]."""
+    if candidate.kind == "length":
+        return outline.lengthen(candidate.side)
+    side = outline.sides[candidate.side]
+    return outline.offset(candidate.side, lambda arc: share_of(side, candidate.stretch, arc))

@@ -11,9 +11,10 @@ from typing import Self
 import numpy as np
 
 from seatlook import mesh
-from seatlook.improvement.candidate import Candidate, share_of
-from seatlook.improvement.morph import Morph
-from seatlook.improvement.outline import Outline, drawn_outlines, mesh_outlines
+from seatlook.improvement.candidate import Candidate, outline_way
+from seatlook.improvement.cutting.morph import Morph
+from seatlook.improvement.cutting.outline import drawn_outlines, mesh_outlines
+from seatlook.improvement.partners import Partners
 from seatlook.mesh.closest import closest_places
 from seatlook.model import Anchor, Cover, FloatArray, Foam, Hook, Panel, Pattern, Scene, Solution
 
@@ -36,6 +37,7 @@ class Changes:
         self._cover = solution.cover
         self.outlines = mesh_outlines(self._cover, pattern)
         self._drawn = drawn_outlines(pattern)
+        self.partners = Partners(pattern, self._drawn)
         self._morph = Morph(self._cover, pattern, self.outlines)
         self._ways: dict[Candidate, FloatArray] = {}
         self._made: Amounts = {}
@@ -86,8 +88,11 @@ class Changes:
         return share
 
     def pattern(self, amounts: Amounts) -> Pattern:
-        """Return the pattern with the same edges, notches and lines, changed."""
-        amounts = added(self._made, amounts)
+        """Return the pattern with the same edges, notches and lines, changed.
+
+        What partners differ by is exactly what the amounts mean to first order.
+        """
+        amounts = self.partners.exact(added(self._made, amounts))
         ways = {
             panel: np.zeros_like(self.drawn.panels[panel].outline)
             for panel in {c.panel for c in amounts if c.kind in ("offset", "length")}
@@ -215,11 +220,3 @@ def added(*parts: Amounts) -> dict[Candidate, float]:
         for candidate, amount in part.items():
             total[candidate] = total.get(candidate, 0.0) + amount
     return total
-
-
-def outline_way(outline: Outline, candidate: Candidate) -> FloatArray:
-    """How the vertices of an outline move for an amount of 1, (r, 2) [1]."""
-    if candidate.kind == "length":
-        return outline.lengthen(candidate.side)
-    side = outline.sides[candidate.side]
-    return outline.offset(candidate.side, lambda arc: share_of(side, candidate.stretch, arc))

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from seatlook import io
+from seatlook.assembly.ease import seam_ease
 from seatlook.improvement.candidate import Candidate, words_of
 from seatlook.improvement.changes import Amounts, Changes, added
 from seatlook.improvement.loop import Iteration
@@ -15,8 +16,8 @@ from seatlook.improvement.propose import Proposals, in_words
 from seatlook.model import Pattern, Scene, Solution
 
 PATTERN, SEAMS, CORRECTIONS = "pattern.dxf", "seams.toml", "corrections.csv"
-COURSE, PROOF = "course.csv", "proof.csv"
-WRITTEN = (PATTERN, SEAMS, CORRECTIONS)
+COURSE, PROOF, LENGTHS = "course.csv", "proof.csv", "lengths.csv"
+WRITTEN = (PATTERN, SEAMS, CORRECTIONS, LENGTHS)
 WRITTEN_BY_LOOP = (*WRITTEN, COURSE, PROOF)
 _CUT = ("offset", "length")
 _SAME = 5e-5  # m, by which neighbouring stretches may differ that are named as one
@@ -31,12 +32,42 @@ def rows_of(proposals: Proposals) -> list[_Row]:
     ]
 
 
-def rows_made(changes: Changes, made: Amounts) -> list[_Row]:
-    """One row per stretch of an edge, length, hook or panel that is changed, amounts in mm."""
-    return [
-        _row(move, amount) | {"sentence": in_words(move, amount)}
+def rows_made(changes: Changes, made: Amounts, chosen: Sequence[Move] = ()) -> list[_Row]:
+    """One row per stretch of an edge, length, hook or panel that is changed, amounts in mm.
+
+    Parameters
+    ----------
+    chosen : corrections; what is in none of them was changed so that seams can be sewn
+    """
+    meant = {candidate for move in chosen for candidate in move.share}
+
+    def why(move: Move) -> str:
+        return "correction" if not chosen or meant & move.share.keys() else "keeps its seam"
+
+    rows = [
+        _row(move, amount) | {"why": why(move), "sentence": in_words(move, amount)}
         for move, amount in _parts(changes, made)
     ]
+    return sorted(rows, key=lambda row: str(row["why"]))
+
+
+def length_rows(before: Pattern, after: Pattern) -> list[_Row]:
+    """One row per seam: lengths of both sides in mm, and by how much the near one is longer."""
+    rows = list[_Row]()
+    for seam in after.seams:
+        old, new = seam_ease(before, seam), seam_ease(after, seam)
+        rows.append(
+            {
+                "seam": seam.name,
+                "near": seam.a,
+                "far": " ".join(seam.b),
+                "near_mm": 1e3 * new.length_a,
+                "far_mm": 1e3 * new.length_b,
+                "ease_before_mm": 1e3 * old.ease,
+                "ease_mm": 1e3 * new.ease,
+            }
+        )
+    return rows
 
 
 def course_rows(iterations: Sequence[Iteration]) -> list[_Row]:
@@ -88,7 +119,7 @@ def write_corrected(
         A folder that cannot be written.
     """
     made = added(*(proposal.amounts for proposal in proposals.proposals))
-    _write_pattern(Changes(solution, scene.pattern).pattern(_cut(made)), out)
+    _write_pattern(scene.pattern, Changes(solution, scene.pattern).pattern(_cut(made)), out)
     _write_rows(rows_of(proposals), out / CORRECTIONS)
     return WRITTEN
 
@@ -105,9 +136,9 @@ def write_improved(
     InputError
         A folder that cannot be written.
     """
-    made = iterations[-1].made
-    _write_pattern(changes.pattern(_cut(made)), out)
-    _write_rows(rows_made(changes, made), out / CORRECTIONS)
+    made, chosen = iterations[-1].made, iterations[-1].chosen
+    _write_pattern(changes.drawn, changes.pattern(_cut(made)), out)
+    _write_rows(rows_made(changes, made, chosen), out / CORRECTIONS)
     _write_rows(course_rows(iterations), out / COURSE)
     _write_rows(proof_rows(proof), out / PROOF)
     return WRITTEN_BY_LOOP
@@ -122,9 +153,10 @@ def _row(move: Move, amount: float) -> _Row:
     }
 
 
-def _write_pattern(pattern: Pattern, out: Path) -> None:
+def _write_pattern(before: Pattern, pattern: Pattern, out: Path) -> None:
     io.write_dxf(pattern, out / PATTERN)
     io.write_seams(pattern, out / SEAMS)
+    _write_rows(length_rows(before, pattern), out / LENGTHS)
 
 
 def _write_rows(rows: Sequence[_Row], path: Path) -> None:

@@ -51,6 +51,7 @@ class Iteration:
     sentence : what this iteration changed
     expected : gain that slopes and straight answers promised
     solves : warm ones up to here
+    closed : numbers of seams whose lines were made equal; they stay so
     ended : why it is the last; "" before
     limit : what would help most and may not be changed, "" where nothing is known
     """
@@ -63,6 +64,7 @@ class Iteration:
     sentence: str = "as it is"
     expected: float = 0.0
     solves: int = 0
+    closed: frozenset[int] = frozenset()
     ended: str = ""
     limit: str = ""
 
@@ -120,7 +122,7 @@ def improve(
         The result is not converged, or its balance is unstable.
     """
     refuse_unbalanced(assessment.solution)
-    return descend(_Seat(scene, assessment, goal or Goal()), most=scene.improve.corrections)
+    return descend(SeatTask(scene, assessment, goal or Goal()), most=scene.improve.corrections)
 
 
 def descend(task: Task, *, most: int) -> Iterator[Iteration]:
@@ -175,8 +177,11 @@ class _Step:
 
     def best(self, reach: float, least: float) -> tuple[Iteration | None, str]:
         """The next iteration, or None and why there is none."""
-        left = [m for m in self._place.moves if _allowed(m, self._now.chosen, self._most)]
-        left = left[:SHORT_LIST]
+        left = [
+            m
+            for m in self._place.moves
+            if _allowed(m, self._now.chosen, self._most) and not m.seams & self._now.closed
+        ][:SHORT_LIST]
         for _ in range(_REFUSALS):
             if not left:
                 break
@@ -202,7 +207,8 @@ class _Step:
             values[one] = found
             return found[0].total - self._now.value.total
 
-        best, _ = checked(change, amount, self._place.slope(move))
+        closes = move.closes if abs(move.closes) <= self._place.room(move) else 0.0
+        best, _ = checked(change, amount, self._place.slope(move), closes)
         if best not in values:
             return None
         again = _adjusts(move, self._now.chosen)
@@ -215,10 +221,11 @@ class _Step:
             sentence=f"{'adjusted: ' if again else ''}{in_words(move, best)}",
             expected=gain,
             solves=self._now.solves + self.solves,
+            closed=self._now.closed | (move.seams if closes and best == closes else frozenset()),
         )
 
     def _made(self, move: Move, amount: float) -> Mapping[Candidate, float]:
-        return added(self._now.made, {c: amount * part for c, part in move.share.items()})
+        return added(self._now.made, move.amounts(amount))
 
 
 def _adjusts(move: Move, chosen: Sequence[Move]) -> bool:
@@ -259,8 +266,14 @@ def _limit(place: Place, now: Iteration, most: int, start: float) -> str:
     return f"{words}: {100 * share:.0f} % for this mm, but {why}"
 
 
-class _Seat:
-    """The task of a seat; each value is solved from the start, whatever was tried before."""
+class SeatTask:
+    """The task of a seat; each value is solved from the start, whatever was tried before.
+
+    Raises
+    ------
+    InputError
+        Nothing may change.
+    """
 
     def __init__(self, scene: Scene, assessment: Assessment, goal: Goal) -> None:
         self._scene, self._start = scene, assessment.solution
@@ -270,6 +283,7 @@ class _Seat:
         self._solved: dict[frozenset[tuple[Candidate, float]], Solution] = {}
 
     def value(self, made: Amounts) -> tuple[Parts, float] | None:
+        """Objective of a warm solve with amounts made, rounded and sharp; None if not at rest."""
         try:
             solution = self._solution(made)
         except (SolverError, InvertedElementError):
@@ -279,6 +293,7 @@ class _Seat:
         return self._objective.of(solution), self._objective.literal().of(solution).total
 
     def place(self, made: Amounts) -> Ways:
+        """Slopes and moves with amounts made."""
         solution = self._solution(made)
         return ways_at(
             self._scene, solution, self._changes, self._objective.over(solution.cover),

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 
-from seatlook.improvement.candidate import Candidate, Kind, words_of
-from seatlook.improvement.changes import Changes
-from seatlook.improvement.outline import Outline
+from seatlook.improvement.candidate import Candidate, Kind, stops_of, words_of
+from seatlook.improvement.changes import Amounts, Changes, added
+from seatlook.improvement.cutting.outline import Outline
 from seatlook.model import FloatArray, Solution
 
 _MIRRORED = 0.012  # m, by which the middles of two edges may miss each other's mirror image
 _AS_LONG = 0.01  # of its length, by which they may differ
+_EQUAL = 5e-5  # m, by which lines that are sewn may differ
+_SHORTEST = 3e-4  # m that an edge was moved by, if it was
+MENDS = 0.2  # of what sewn lines differ by, squared, from which a move is a repair
 _ALIKE = 0.5  # of the larger slope: a pair whose slopes differ by more is not moved as one
 
 
@@ -27,16 +31,113 @@ class Move:
     names : of the edges, hooks or panels; two for a symmetric pair
     places : (begin, end) in words for each of these
     share : candidate -> its amount for an amount of 1
+    follows : lengths that change with these, so that sewn lines still agree
+    seams : numbers of the seams whose ease it changes
+    closes : amount [m] that makes sewn lines agree that do not; 0 where nothing does
+    mends : share of the squares of all such differences that goes with it
     """
 
     kind: Kind
     names: tuple[str, ...]
     places: tuple[tuple[str, str], ...]
     share: Mapping[Candidate, float]
+    follows: Mapping[Candidate, float] = field(default_factory=lambda: MappingProxyType({}))
+    seams: frozenset[int] = frozenset()
+    closes: float = 0.0
+    mends: float = 0.0
+
+    @property
+    def every(self) -> dict[Candidate, float]:
+        """All that changes, for an amount of 1."""
+        return added(self.share, self.follows)
 
     def total(self, values: Mapping[Candidate, float]) -> float:
         """Sum of values per candidate, for an amount of 1."""
-        return sum(part * values[candidate] for candidate, part in self.share.items())
+        return sum(part * values[candidate] for candidate, part in self.every.items())
+
+    def amounts(self, amount: float) -> dict[Candidate, float]:
+        """Amount of every candidate [m]."""
+        return {candidate: amount * part for candidate, part in self.every.items()}
+
+
+def sewable(
+    changes: Changes, slope: Mapping[Candidate, float], frozen: frozenset[str]
+) -> tuple[dict[Candidate, float], dict[Candidate, Amounts]]:
+    """Slopes with all that must follow for the seams' sake, and what follows.
+
+    Candidates whose partners cannot follow are left out.
+
+    Parameters
+    ----------
+    slope : candidate -> derivative, of all that may follow too
+    frozen : names of edges that stay
+    """
+    follows = {c: changes.partners.followers(c, frozen) for c in slope}
+    able: dict[Candidate, Amounts] = {c: f for c, f in follows.items() if f is not None}
+    return {c: slope[c] + sum(v * slope[o] for o, v in f.items()) for c, f in able.items()}, able
+
+
+def followed(
+    changes: Changes, move: Move, follows: Mapping[Candidate, Amounts], made: Amounts
+) -> Move:
+    """The same move with what follows each of its candidates, and where it closes its seams.
+
+    Parameters
+    ----------
+    made : amounts [m] that have been made
+    """
+    partners = changes.partners
+    parts = [
+        {other: part * v for other, v in follows[candidate].items()}
+        for candidate, part in move.share.items()
+    ]
+    seams = {n for c in move.share if (n := partners.seam_of(c)) is not None}
+    closes = [partners.closing(c, made) / part for c, part in move.share.items()]
+    # Mirrored seams that differ by different amounts are not closed by one.
+    closing = float(np.mean(closes)) if seams and max(closes) - min(closes) <= _EQUAL else 0.0
+    away = partners.differences(made)
+    wrong = float(sum(away[number] ** 2 for number in seams))
+    return replace(
+        move,
+        follows=added(*parts),
+        seams=frozenset(seams),
+        closes=closing,
+        mends=wrong / float(np.dot(away, away)) if abs(closing) > _SHORTEST else 0.0,
+    )
+
+
+def mending(
+    changes: Changes, candidates: Collection[Candidate], made: Amounts, limit: float
+) -> tuple[Move, ...]:
+    """Whole edges that were moved, as sewn lines say that do not agree: back where they do.
+
+    Parameters
+    ----------
+    candidates : that may change
+    limit : float [m] of an offset
+    """
+    partners, edges = changes.partners, dict[tuple[int, int], list[Candidate]]()
+    for candidate in candidates:
+        if candidate.kind == "offset":
+            edges.setdefault((candidate.panel, candidate.side), []).append(candidate)
+    away, moves = partners.differences(made), list[Move]()
+    for (panel, number), stretches in edges.items():
+        side = changes.outlines[panel].sides[number]
+        slope = np.sum([partners.slope(c) for c in stretches], axis=0)
+        fit = float(np.dot(slope, away))
+        whole = len(stretches) == len(stops_of(side)) - 1
+        if not whole or not fit:
+            continue
+        amount = -fit / float(np.dot(slope, slope))
+        mends = -amount * fit / float(np.dot(away, away))
+        if mends > MENDS and _SHORTEST < abs(amount) <= limit:
+            moves.append(
+                Move(
+                    kind="offset", names=(side.edge,), places=(("its beginning", "its end"),),
+                    share=dict.fromkeys(stretches, 1.0), closes=amount, mends=mends,
+                )
+            )  # fmt: skip
+    return tuple(moves)
 
 
 def moves_of(

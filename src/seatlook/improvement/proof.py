@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import t
@@ -31,6 +31,7 @@ class Proof:
     error : of the gain by the mesh, as an estimate
     missed : limits of [accept] that the corrected seat misses with some seed, a sentence each
     unsolved : why some solve is not at rest, a sentence each
+    corrected : the corrected seat with the first of the seeds, None where it was not kept
     """
 
     seeds: tuple[int, ...]
@@ -39,6 +40,7 @@ class Proof:
     error: float
     missed: tuple[str, ...] = ()
     unsolved: tuple[str, ...] = ()
+    corrected: Assessment | None = field(default=None, repr=False, compare=False)
 
     @property
     def gains(self) -> tuple[float, ...]:
@@ -125,6 +127,7 @@ def prove(
         error=_error(assessment, *parts),
         missed=_missed(corrected, numbers, after),
         unsolved=_unsolved(numbers, before, after),
+        corrected=after[0],
     )
 
 

@@ -38,7 +38,7 @@ class Proposal:
     @property
     def amounts(self) -> dict[Candidate, float]:
         """Amount of each candidate [m]."""
-        return {candidate: self.amount * part for candidate, part in self.move.share.items()}
+        return self.move.amounts(self.amount)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -149,13 +149,14 @@ class _Search:
         shapes = {0.0: self._ways.x}
 
         def change(one: float) -> float:
-            parts = [p.amounts for p in before] + [{c: one * v for c, v in move.share.items()}]
+            parts = [p.amounts for p in before] + [move.amounts(one)]
             cover = self._changes.cover(added(*parts))
             solution = solve_warm(self._changes.solution, cover)
             shapes[one] = solution.positions
             return self._objective.of(solution).total - value
 
-        best, gain = checked(change, amount, self._ways.slope(move))
+        closes = move.closes if abs(move.closes) <= self._ways.room(move) else 0.0
+        best, gain = checked(change, amount, self._ways.slope(move), closes)
         return best, gain, shapes[best]
 
 

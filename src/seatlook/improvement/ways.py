@@ -18,21 +18,27 @@ from seatlook.improvement.candidate import (
 )
 from seatlook.improvement.changes import Amounts, Changes
 from seatlook.improvement.missing_hooks import Unhooked, unhooked_wires
-from seatlook.improvement.moves import Move, moves_of
+from seatlook.improvement.moves import MENDS, Move, followed, mending, moves_of, sewable
 from seatlook.improvement.objective import Objective
 from seatlook.improvement.sensitivity import Sensitivities, sensitivities
 from seatlook.model import FloatArray, Scene, Solution
 from seatlook.solver.balance import Balance
 
 _BALANCED = 1e-6  # residual at which slopes are taken
-SHORT_LIST = 12  # moves whose answer is looked at
+SHORT_LIST = 16  # moves whose answer is looked at
+_REPAIRS = 8  # of them, at most, that make sewn lines agree
+_RIVAL = 0.5  # of what the best repair mends, from which another is its rival
 LEAST_GAIN = 0.03  # of the objective
 REACH = 0.015  # m of movement, beyond which straight answers mislead
 SMALLEST = 3e-4  # m that nobody cuts
 CHECKS = 3  # warm solves of one move
 _STEPS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0)  # of the largest amount
 _MEANT = 0.5  # of the foam's slope, from which a wire that holds nothing goes before it
+_NEAR = (0.3, 3.0)  # of the amount that closes a seam: so near, that is looked at
+_CLOSING = 0.75  # of the largest gain, for which a seam is closed
 _CLOSE = 0.8  # of the amount: a better one that is closer is not looked at
+
+_Tried = tuple[float, float, Move]
 
 
 class Ways:
@@ -105,8 +111,9 @@ class Ways:
     ) -> tuple[float, float, Move]:
         """Gain, amount and move of what helps most from ``x``, or from the balance.
 
-        A wire that is there and holds nothing is meant to be used: it goes before foam that gains
-        about as much for each mm, however much foam could be added.
+        Sewn lines that do not agree say where a pattern was changed: what mends that goes first if
+        it gains at all. A wire that is there and holds nothing is meant to be used: it goes
+        before foam that gains about as much for each mm, however much foam could be added.
 
         Parameters
         ----------
@@ -115,11 +122,24 @@ class Ways:
         start = self.x if x is None else x
         tried = [(*self._along(move, start, reach), move) for move in moves]
         best = max(tried, key=lambda one: one[0])
+        repair = self._repair(tried)
+        if repair is not None:
+            return repair
         if best[2].kind != "foam":
             return best
         least = _MEANT * abs(self.slope(best[2]))
         wires = [t for t in tried if t[2].kind == "wire" and abs(self.slope(t[2])) > least]
         return max([t for t in wires if t[0] > 0.0], key=lambda one: one[0], default=best)
+
+    def _repair(
+        self, tried: Sequence[tuple[float, float, Move]]
+    ) -> tuple[float, float, Move] | None:
+        """Of what makes sewn lines agree and gains something, the best; None if nothing does."""
+        least = LEAST_GAIN * self.value.total
+        able = [t for t in tried if t[2].mends > MENDS and t[0] > least and t[1] * t[2].closes > 0]
+        most = max((t[2].mends for t in able), default=0.0)
+        alike = [t for t in able if t[2].mends >= _RIVAL * most]
+        return max(alike, key=lambda one: one[0], default=None)
 
     def _along(self, move: Move, x: FloatArray, reach: float) -> tuple[float, float]:
         """Largest gain along a move from ``x``, and the amount that gives it."""
@@ -139,7 +159,7 @@ class Ways:
         """How positions move per m, (n, 3) [1]."""
         if id(move) not in self._answers:
             force = np.zeros_like(self._balance.process.state)
-            for candidate, part in move.share.items():
+            for candidate, part in move.every.items():
                 force -= part * self._found.forces[candidate]
             self._answers[id(move)] = self._balance.solve(force)[: len(self.x)]
         return self._answers[id(move)]
@@ -170,24 +190,31 @@ def ways_at(
         The balance is unstable, so that slopes mean nothing.
     """
     limits = limits_of(scene.improve)
-    every = candidates_of(changes.solution.cover, changes.outlines)
-    free = free_of(scene, changes)
+    every, frozen = candidates_of(changes.solution.cover, changes.outlines), frozen_names(scene)
+    free = set(free_of(scene, changes))
     balance = Balance(solution, slides=True)
     balance.polish(_BALANCED)
     here = changes.beyond(made)
-    found = sensitivities(balance, here, objective, every if with_fixed else free)
+    # Lengths are asked in any case: they follow, so that seams can be sewn.
+    asked = [c for c in every if with_fixed or c in free or c.kind == "length"]
+    found = sensitivities(balance, here, objective, asked)
     if found.downhill:
         raise SolverError(
             f"the balance is unstable in {found.downhill} directions: slopes mean nothing there"
         )
     ways = Ways(balance, here, objective, found, limits, made)
     pairs = scene.improve.symmetric
-    moves = moves_of(changes, {c: found.slope[c] for c in free}, pairs=pairs)
+    slope, follows = sewable(changes, found.slope, frozen)
+    gathered = moves_of(changes, {c: v for c, v in slope.items() if c in free}, pairs=pairs)
+    moves = tuple(followed(changes, move, follows, made) for move in gathered)
     if limits["wire"] > 0.0:
         wires = unhooked_wires(scene, solution)
         moves = (*moves, *(ways.hooked(w) for w in wires if w.wire not in scene.improve.frozen))
-    held = {c: v for c, v in found.slope.items() if c not in set(free)}
-    ways.moves = tuple(sorted(moves, key=lambda m: -abs(ways.slope(m)) * limits[m.kind]))
+    held = {c: v for c, v in found.slope.items() if c not in free} if with_fixed else {}
+    moves = (*moves, *mending(changes, [c for c in every if c in free], made, limits["offset"]))
+    steep = sorted(moves, key=lambda m: -abs(ways.slope(m)) * limits[m.kind])
+    repairs = sorted((m for m in steep if m.mends > MENDS), key=lambda m: -m.mends)[:_REPAIRS]
+    ways.moves = (*repairs, *(m for m in steep if m not in repairs))
     ways.fixed = moves_of(changes, held, pairs=pairs)
     return ways
 
@@ -207,37 +234,47 @@ def free_of(scene: Scene, changes: Changes) -> tuple[Candidate, ...]:
 
 
 def checked(
-    change: Callable[[float], float | None], amount: float, slope: float
+    change: Callable[[float], float | None], amount: float, slope: float, closes: float = 0.0
 ) -> tuple[float, float]:
     """Amount [m] and gain of a move, by a few looks at what it really changes.
 
     Where a check finds less than was expected, as straight answers do beyond the taut cover, the
     next amount is that of the parabola through slope and check, and half where nothing was found.
 
+    Lines of a seam that differ are a fault of their own. An amount that makes them equal is looked
+    at first, and taken if it gains nearly as much as the best.
+
     Parameters
     ----------
     change : what an amount changes of the objective; None where that cannot be solved
     amount : that straight answers propose
     slope : of the objective
+    closes : amount [m] that makes the lines of its seam equal; 0 where nothing does
 
     Examples
     --------
     >>> checked(lambda a: (a - 0.002) ** 2 - 0.002**2, 0.004, -0.004)[0]
     0.002
+    >>> checked(lambda a: (a - 0.002) ** 2 - 0.002**2, 0.004, -0.004, 0.0025)[0]
+    0.0025
     >>> checked(lambda a: 1.0, 0.004, -0.004)
     (0.0, 0.0)
     """
-    fall, best = -abs(slope * amount), (0.0, 0.0)
+    if closes and _NEAR[0] <= amount / closes <= _NEAR[1]:
+        amount = closes
+    fall, gains = -abs(slope * amount), {0.0: 0.0}
     for _ in range(CHECKS):
         found = change(amount)
         if found is None:
             better = 0.5
         else:
-            if -found > best[1]:
-                best = (amount, -found)
+            gains[amount] = -found
             turned = found - fall
             better = -0.5 * fall / turned if turned > 0.0 else 1.0
         if better > _CLOSE:
             break
         amount, fall = better * amount, better * fall
-    return best
+    best = max(gains, key=gains.__getitem__)
+    if gains.get(closes, 0.0) > _CLOSING * gains[best]:
+        best = closes
+    return best, gains[best]

@@ -217,7 +217,7 @@ class Freedom:
     edge: float = 0.005
     length: float = 0.015
     hook: float = 0.010
-    foam: float = 0.010
+    foam: float = 0.0
     symmetric: bool = True
     corrections: int = 3
 

@@ -186,7 +186,7 @@ KEYS: dict[str, Kind] = {
             "edge_mm": Number(low=0, high=50, scale=MM, default=5.0),
             "length_mm": Number(low=0, high=100, scale=MM, default=15.0),
             "hook_mm": Number(low=0, high=50, scale=MM, default=10.0),
-            "foam_mm": Number(low=0, high=50, scale=MM, default=10.0),
+            "foam_mm": Number(low=0, high=50, scale=MM, default=0.0),
             "symmetric": Flag(default=True),
             "corrections": Integer(low=1, high=20, default=3),
         }

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatlook.errors import InputError
-from seatlook.improvement.outline import drawn_outlines, mesh_outlines
+from seatlook.improvement.cutting.outline import drawn_outlines, mesh_outlines
 from seatlook.model import Edge, Notch, Panel, Pattern
 
 LONG, WIDE = 0.30, 0.20

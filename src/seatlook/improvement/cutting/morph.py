@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse.linalg import SuperLU, splu
 
 from seatlook.errors import InvertedElementError
-from seatlook.improvement.outline import Outline
+from seatlook.improvement.cutting.outline import Outline
 from seatlook.model import Cover, FloatArray, Pattern
 from seatlook.wrinkle.recovery import laplacian
 

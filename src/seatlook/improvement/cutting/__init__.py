@@ -1,0 +1,1 @@
+"""The outline of a panel, and the mesh that follows it."""
