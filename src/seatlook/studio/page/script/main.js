@@ -56,7 +56,7 @@ class Studio {
       part(`tab-${room}`).tabIndex = own ? 0 : -1;
     }
     if (this.store.state) this.show(this.store.state);
-    if (name === "run" || name === "process") void this.store.loadRuns();
+    if (name === "looks") void this.store.loadMaterials();
   }
 
   /** @param {KeyboardEvent} event @param {number} k */

@@ -16,8 +16,8 @@ export class Store {
     /** @type {Promise<unknown>} */
     this.queue = Promise.resolve();
     this.waiting = 0;
-    /** @type {import("./types.js").Run[]} */
-    this.runs = [];
+    /** @type {import("./types.js").MaterialCard[]} */
+    this.materials = [];
   }
 
   /** @returns {State} */
@@ -41,9 +41,9 @@ export class Store {
     this.take(await ask("/api/state"));
   }
 
-  /** What was run, newest first. */
-  async loadRuns() {
-    this.runs = (await ask("/api/runs")).runs;
+  /** What there is to make a cover of. */
+  async loadMaterials() {
+    this.materials = (await ask("/api/materials")).materials;
     if (this.state) this.take(this.state);
   }
 

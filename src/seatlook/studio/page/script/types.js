@@ -16,15 +16,16 @@
  *   seams?: string[]}} Stage */
 /** @typedef {{first: Record<string, any>, second: Record<string, any>, reverse: boolean, lengths_mm: [number, number], ease_percent: number,
  *   rivals?: any[], warnings?: string[]}} Partner */
-/** @typedef {{name: string, title: string, swatch_url?: string | null, source?: string}} MaterialCard */
-/** @typedef {{run: string, command?: string, path?: string, status: string, page_url?: string | null,
- *   snapshots?: {name: string, url?: string | null}[]}} Run */
+/** @typedef {{name: string, kind: "cover" | "look" | "foam", own: boolean, values: Record<string, any>}} MaterialCard */
+/** @typedef {{name: string, status: string, stage: string, fraction: number | null, seconds_left: number | null,
+ *   figures: Record<string, number | string>, errors: string[], found: string, reason: string, missed: string[],
+ *   page_url?: string | null, images?: string[], snapshots?: string[]}} Run */
 /** @typedef {{file?: string, line?: number | null, key?: string, text: string}} Fault */
 /** @typedef {{etag: string, folder: string | null, has_scene: boolean, errors: Fault[], undo: string | number | boolean | null,
  *   redo: string | number | boolean | null, name: string,
  *   pattern: {panels: Panel[]} | null, seams: Seam[], guesses: Guess[], stages: Stage[],
  *   hooks: Record<string, any>[], wires: any[], frames: Record<string, any>[],
  *   placement?: Record<string, any>, panels: Record<string, Record<string, any>>, rigs: any[], camera: Record<string, any>,
- *   materials?: MaterialCard[]}} State */
+ *   runs: Run[]}} State */
 
 export {};

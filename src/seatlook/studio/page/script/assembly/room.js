@@ -5,6 +5,7 @@ import { Pointer } from "../../../../report/viewer/script/pointer.js";
 import { draw, find, make, part, press, put } from "../dom.js";
 import { Refusal, ask } from "../api.js";
 import { FOAM, linesOf, middleOfTie, panelTint, placesOf, tintNumber } from "./content.js";
+import { Hooks } from "./hooks.js";
 import { Mover } from "./mover.js";
 import { Stage } from "./stage.js";
 
@@ -43,6 +44,9 @@ export class AssemblyRoom {
       part("assembly-said").textContent = `The seat cannot be drawn: ${problem instanceof Error ? problem.message : problem}.`;
     }
     this.mover = new Mover(this);
+    this.hooks = new Hooks(store, () => {
+      if (this.assembly) this.lists();
+    });
     this.pointer = new Pointer(this.canvas, this.camera, () => this.redraw(), (x, y) => this.pick(x, y));
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
     put(part("assembly-views"), ...VIEWS.map((view) => press(view.name, () => this.look(view))));
@@ -52,6 +56,7 @@ export class AssemblyRoom {
   /** @param {boolean} open whether this room is shown now */
   show(open) {
     this.open = open;
+    if (open) this.hooks.show();
     if (open && this.store.now.etag !== this.etag) void this.load();
     if (open) this.redraw();
   }
@@ -82,7 +87,7 @@ export class AssemblyRoom {
 
   /** @param {Assembly} assembly */
   take(assembly) {
-    const first = this.assembly === null;
+    const before = this.assembly === null ? null : this.whole;
     this.assembly = assembly;
     const { stage } = this;
     part("assembly-said").textContent = assembly.seconds === undefined ? "" : `Put together and checked in ${assembly.seconds.toFixed(1)} s.`;
@@ -94,7 +99,10 @@ export class AssemblyRoom {
       stage.setLines(linesOf(assembly, null));
       this.whole = stage.measure();
     }
-    if (first) this.look(VIEWS[0]);
+    // The view stays, unless what is seen has become much larger, smaller, or lies elsewhere.
+    const apart = before ? Math.hypot(...before.middle.map((x, i) => x - this.whole.middle[i])) / before.reach : 1;
+    const larger = before ? this.whole.reach / before.reach : 2;
+    if (apart > 0.3 || larger > 1.3 || larger < 0.77) this.look(before ? this.camera.state : VIEWS[0]);
     this.mover.keep();
     this.lists();
     this.redraw();
@@ -125,11 +133,23 @@ export class AssemblyRoom {
   tieRow(tie) {
     const { kind, name, number, target, gap_mm: gap } = tie;
     const words = [kind === "seam" ? "" : `${kind} to ${target}`, `${gap.toFixed(0)} mm apart`].filter(Boolean).join(", ");
+    const hooking = this.hooks.wire !== null && kind === "seam";
     return make("button", {
-      type: "button", class: "row", "aria-pressed": String(this.chosen === name), "data-key": `tie ${kind} ${name}`,
-      click: () => this.choose(name),
+      type: "button", class: "row", "data-key": `tie ${kind} ${name}`,
+      "aria-pressed": String(hooking ? this.hooks.chain.includes(name) : this.chosen === name),
+      click: () => this.press(hooking, name),
     }, make("span", { class: `number ${lookOf(tie)}` }, String(number)), make("span", { class: "name" }, name),
     make("span", { class: "figures" }, words));
+  }
+
+  /** @param {boolean} hooking whether seams are chosen for a wire @param {string} name of a seam */
+  press(hooking, name) {
+    if (!hooking) {
+      this.choose(name);
+      return;
+    }
+    this.hooks.toggle(name);
+    this.lists();
   }
 
   /** @param {string} name of a seam */

@@ -1,6 +1,7 @@
 // Materials of the panels, lights and views.
 
-import { choiceField, make, numberField, part, press, put } from "../dom.js";
+import { hexOf } from "../../../../report/viewer/script/colour.js";
+import { choiceField, draw, make, numberField, part, press, put } from "../dom.js";
 
 /** @typedef {import("../store.js").Store} Store */
 
@@ -10,6 +11,33 @@ const LIGHT_WORDS = {
   lumen: "Power, lm", illuminance_lux: "Brightness, lx", elevation_deg: "Elevation, degrees", azimuth_deg: "Azimuth, degrees",
   radius_mm: "Radius, mm", temperature_k: "Colour temperature, K",
 };
+
+/** @typedef {import("../types.js").MaterialCard} MaterialCard */
+
+/** @param {string} name of a material, or of its file in the folder */
+const titleOf = (name) => name.replace(/^materials\//, "").replace(/\.toml$/, "");
+
+/** A disc of the material's colour. @param {Record<string, any> | undefined} appearance */
+function swatch(appearance) {
+  const albedo = appearance?.albedo;
+  const colour = Array.isArray(albedo) ? hexOf(albedo) : "#888888";
+  return draw("svg", { viewBox: "0 0 64 64", width: 64, height: 64, class: "swatch", "aria-hidden": "true" },
+    draw("circle", { cx: 32, cy: 32, r: 30, fill: colour }));
+}
+
+/** @param {MaterialCard} card */
+function wordsOfCard({ kind, own, values: { fabric, appearance } }) {
+  return [
+    own ? "of this folder" : "", kind === "look" ? "a look only" : "", fabric?.thickness_mm ? `${fabric.thickness_mm} mm thick` : "",
+    appearance?.roughness ? `roughness ${appearance.roughness}` : "",
+  ].filter(Boolean).join(", ");
+}
+
+/** @param {Record<string, unknown>} source */
+function sourcesOf(source) {
+  const rows = Object.entries(source).flatMap(([key, text]) => [make("dt", {}, key.replaceAll("_", " ")), make("dd", {}, String(text))]);
+  return make("details", {}, make("summary", {}, "Sources"), make("dl", {}, ...rows));
+}
 
 export class LooksRoom {
   /** @param {Store} store */
@@ -25,7 +53,7 @@ export class LooksRoom {
   }
 
   get choices() {
-    return (this.store.now.materials ?? []).map(({ name, title }) => ({ value: name, text: title || name }));
+    return this.store.materials.filter(({ kind }) => kind === "cover").map(({ name }) => ({ value: name, text: titleOf(name) }));
   }
 
   panels() {
@@ -42,13 +70,17 @@ export class LooksRoom {
   }
 
   library() {
-    put(part("material-cards"), ...(this.store.now.materials ?? []).map(({ name, title, swatch_url: swatch, source }) => make("li", { class: "card" },
-      swatch ? make("img", { src: swatch, alt: "", width: 96, height: 96 }) : make("span", { class: "no-swatch", "aria-hidden": "true" }),
-      make("span", { class: "name" }, title || name),
-      source ? make("span", { class: "hint" }, source) : null,
+    const covers = this.store.materials.filter(({ kind }) => kind !== "foam");
+    put(part("material-cards"), ...covers.map((card) => make("li", { class: "card" },
+      swatch(card.values.appearance),
+      make("span", { class: "name" }, titleOf(card.name)),
+      make("span", { class: "hint" }, wordsOfCard(card)),
+      card.values.source ? sourcesOf(card.values.source) : null,
       press("Edit a copy", () => {
-        void this.store.edit([{ kind: "material.copy", material: name, name: `${name}-own` }], `A copy of ${title || name} lies in the folder now.`);
-      }, { "data-key": `copy ${name}`, "aria-label": `Edit a copy of ${title || name}` }))));
+        const name = `${titleOf(card.name)}-own`;
+        void this.store.edit([{ kind: "material.copy", material: card.name, name }], `The copy ${name} lies in the folder now.`)
+          .then(() => this.store.loadMaterials());
+      }, { "data-key": `copy ${card.name}`, "aria-label": `Edit a copy of ${titleOf(card.name)}` }))));
   }
 
   rigs() {

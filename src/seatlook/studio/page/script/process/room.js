@@ -87,9 +87,8 @@ export class ProcessRoom {
   }
 
   snapshots() {
-    const run = this.store.runs.find(({ snapshots }) => snapshots?.some(({ url }) => url));
-    put(part("snapshots"), ...(run?.snapshots ?? []).filter(({ url }) => url).map(({ name, url }) => make("figure", {},
-      make("img", { src: url, alt: `The cover after ${name}` }), make("figcaption", {}, name))));
+    const run = this.store.now.runs.find(({ snapshots, page_url: page }) => snapshots?.length && page);
+    put(part("snapshots"), run && make("a", { href: run.page_url ?? "", target: "_blank", rel: "noopener" }, `${run.name}: ${run.snapshots?.join(", ")}`));
     part("snapshots-head").hidden = !run;
   }
 }

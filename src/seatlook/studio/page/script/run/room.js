@@ -4,100 +4,96 @@ import { find, make, part, put } from "../dom.js";
 import { Refusal, tell } from "../api.js";
 
 /** @typedef {import("../store.js").Store} Store */
-/** @typedef {{run: string, status: string, stage?: string, fraction?: number, seconds_left?: number | null,
- *   residual?: number | null, text?: string, page_url?: string | null}} News */
+/** @typedef {import("../types.js").Run} Run */
+
+/** @type {Record<string, string>} */
+const ENDS = {
+  done: "Done.", cancelled: "Cancelled. What it had done is kept.", failed: "It did not work.", interrupted: "The studio ended first.",
+};
 
 /** @param {number} seconds */
 function timeWords(seconds) {
-  if (seconds < 90) return `${Math.max(1, Math.round(seconds))} s left`;
-  return `about ${Math.round(seconds / 60)} min left`;
+  if (seconds < 90) return `${Math.max(1, Math.round(seconds))} s left of this`;
+  return `about ${Math.round(seconds / 60)} min left of this`;
 }
 
 export class RunRoom {
   /** @param {Store} store @param {() => void} filesChanged */
   constructor(store, filesChanged) {
     this.store = store;
-    this.filesChanged = filesChanged;
-    this.running = "";
-    this.run = "";
-    part("run-evaluate").addEventListener("click", () => void this.start("evaluate"));
-    part("run-improve").addEventListener("click", () => void this.start("improve"));
-    part("run-cancel").addEventListener("click", () => void this.cancel());
+    /** @type {Map<string, Run>} news of runs since the state was read */
+    this.news = new Map();
+    part("run-evaluate").addEventListener("click", () => void this.send("/api/run", {
+      command: "evaluate", score: find("run-score", HTMLInputElement).checked,
+    }, "Starting…"));
+    part("run-cancel").addEventListener("click", () => void this.send("/api/run/cancel", {}, "Stopping…"));
     const events = new EventSource("/api/events");
     events.addEventListener("run", (event) => this.hear(JSON.parse(event.data)));
-    events.addEventListener("files", () => this.filesChanged());
+    events.addEventListener("files", () => filesChanged());
+  }
+
+  get runs() {
+    const known = new Set(this.store.now.runs.map(({ name }) => name));
+    const fresh = [...this.news.values()].filter(({ name }) => !known.has(name)).reverse();
+    return [...fresh, ...this.store.now.runs.map((run) => this.news.get(run.name) ?? run)];
   }
 
   show() {
-    const { runs, now: { has_scene: ready } } = this.store;
-    for (const id of ["run-evaluate", "run-improve"]) find(id, HTMLButtonElement).disabled = !ready || this.running !== "";
-    part("run-cancel").hidden = this.running === "";
-    put(part("run-list"), ...runs.map(({ run, command, path, status, page_url: page }) => make("li", {},
-      make("span", { class: "name" }, path ?? command ?? run), make("span", { class: "figures" }, status),
-      page ? make("a", { href: page, target: "_blank", rel: "noopener", "data-key": `run ${run}` }, "Open the page") : null)));
+    const { runs } = this, [last] = runs;
+    const going = runs.find(({ status }) => status === "running");
+    find("run-evaluate", HTMLButtonElement).disabled = !this.store.now.has_scene || Boolean(going);
+    part("run-cancel").hidden = !going;
+    const bar = find("run-bar", HTMLProgressElement);
+    bar.hidden = !going;
+    if (going && going.fraction !== null) bar.value = going.fraction;
+    else bar.removeAttribute("value");
+    part("run-words").textContent = going ? progressWords(going) : last && this.news.has(last.name) ? endWords(last) : "";
+    put(part("run-result"), !going && last?.page_url && this.news.has(last.name)
+      && make("a", { href: last.page_url, target: "_blank", rel: "noopener", class: "main", id: "run-open" }, "Open the result"));
+    put(part("run-list"), ...runs.map(runRow));
     part("run-none").hidden = runs.length > 0;
   }
 
-  /** @param {string} command */
-  async start(command) {
-    this.running = command;
-    this.show();
-    put(part("run-result"));
-    part("run-words").textContent = "Starting…";
-    find("run-bar", HTMLProgressElement).hidden = false;
-    find("run-bar", HTMLProgressElement).removeAttribute("value");
+  /** @param {string} path @param {Record<string, unknown>} body @param {string} words */
+  async send(path, body, words) {
+    part("run-words").textContent = words;
     try {
-      this.run = (await tell("/api/run", { command, options: {} })).run;
+      await tell(path, body);
     } catch (problem) {
-      this.end(problem instanceof Refusal ? problem.message : "The studio's server does not answer.");
-    }
-  }
-
-  async cancel() {
-    part("run-words").textContent = "Stopping…";
-    try {
-      await tell("/api/run/cancel", { run: this.run });
-    } catch (problem) {
+      part("run-words").textContent = "";
       this.store.voice.say(problem instanceof Refusal ? problem.message : "The studio's server does not answer.", true);
     }
   }
 
-  /** @param {News} news */
-  hear(news) {
-    this.run = news.run;
-    if (news.status === "running") {
-      this.progress(news);
-      return;
-    }
-    this.end(news.text ?? news.status);
-    if (news.page_url) {
-      put(part("run-result"), make("a", { href: news.page_url, target: "_blank", rel: "noopener", class: "main" }, "Open the result"));
-    }
-    void this.store.loadRuns();
-  }
-
-  /** @param {News} news */
-  progress({ stage, fraction, seconds_left: left, residual }) {
-    if (!this.running) {
-      this.running = "run";
-      this.show();
-    }
-    const bar = find("run-bar", HTMLProgressElement);
-    bar.hidden = false;
-    if (typeof fraction === "number") bar.value = fraction;
-    part("run-words").textContent = [
-      stage ? `Stage ${stage}` : "Working", typeof fraction === "number" ? `${Math.round(100 * fraction)} %` : "",
-      typeof left === "number" ? timeWords(left) : "",
-      typeof residual === "number" ? `out of balance ${residual.toExponential(1)}, wanted 1.0e-3` : "",
-    ].filter(Boolean).join(", ");
-  }
-
-  /** @param {string} words */
-  end(words) {
-    this.running = "";
-    find("run-bar", HTMLProgressElement).hidden = true;
-    part("run-words").textContent = words;
+  /** @param {Run} run */
+  hear(run) {
+    this.news.set(run.name, run);
     if (this.store.state) this.show();
   }
 }
 
+/** @param {Run} run */
+function progressWords({ stage, fraction, seconds_left: left, figures }) {
+  const { residual } = figures;
+  return [
+    stage || "Working", fraction === null ? "" : `${Math.round(100 * fraction)} %`, left === null ? "" : timeWords(left),
+    typeof residual === "number" ? `out of balance ${residual.toExponential(1)}, wanted 1.0e-3` : "",
+  ].filter(Boolean).join(", ");
+}
+
+/** @param {Run} run */
+function endWords({ status, found, reason, errors, missed }) {
+  return [
+    ENDS[status] ?? status, found ? `The cover is ${found}${reason ? `: ${reason}` : ""}.` : "", ...errors,
+    missed.length ? `Limits missed: ${missed.join("; ")}.` : "",
+  ].filter(Boolean).join(" ");
+}
+
+/** @param {Run} run */
+function runRow(run) {
+  const { name, status, page_url: page } = run;
+  return make("li", { class: "run" },
+    make("span", { class: "name" }, name),
+    make("span", { class: "figures" }, status === "running" ? "running" : endWords(run)),
+    page ? make("a", { href: page, target: "_blank", rel: "noopener", "data-key": `run ${name}` }, "Open the page") : null);
+}

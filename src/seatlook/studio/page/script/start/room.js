@@ -5,7 +5,9 @@ import { Refusal, tell, upload } from "../api.js";
 
 /** @typedef {import("../store.js").Store} Store */
 /** @typedef {{files: Record<string, string>, keys: Record<string, string>}} Draft what is asked for so far */
-/** @typedef {{notes?: string[], sizes?: Record<string, unknown>, left_out?: {what: string, reason: string}[]}} Seen */
+/** @typedef {{notes: string[], left_out: {what: string, reason: string}[], mm_per_unit?: number, surface_mm?: number[],
+ *   foam_mm?: number[], foam_axes?: {unit: string, up: string}, wires?: string[],
+ *   pieces: {name: string, size_mm?: number[], notches?: number}[]}} Seen */
 
 const SHAPES = ["cushion", "horseshoe", "backrest", "headrest", "box", "saddle"];
 const UNITS = ["", "mm", "cm", "m", "inch"].map((value) => ({ value, text: value || "as the file says" }));
@@ -38,14 +40,14 @@ export class StartRoom {
   }
 
   show() {
-    this.demo();
+    part("start-replace").hidden = !this.store.state?.has_scene;
   }
 
   demo() {
     put(part("start-demo"),
       choiceField("Shape", this.shape, SHAPES.map((value) => ({ value, text: value })), (shape) => { this.shape = shape; }, { id: "demo-shape" }),
       numberField("Size, times the usual one", this.scale, (scale) => { this.scale = scale; }, { min: 0.6, max: 1.6 }),
-      press("Make this seat", () => void this.take({ kind: "demo", shape: this.shape, scale: this.scale }, "demo"), { id: "demo-make", class: "main" }),
+      press("Make this seat", () => void this.take({ kind: "demo", choices: { shape: this.shape, scale: this.scale } }, "demo"), { id: "demo-make", class: "main" }),
       make("div", { id: "seen-demo", "aria-live": "polite" }));
   }
 
@@ -111,7 +113,8 @@ export class StartRoom {
     /** @type {Seen & import("../types.js").State} */
     let seen;
     try {
-      seen = await tell("/api/start", asked);
+      const force = find("start-force", HTMLInputElement).checked;
+      seen = await tell("/api/start", force ? { ...asked, force } : asked);
     } catch (problem) {
       this.say(kind, problem instanceof Refusal ? problem.message : "The studio's server does not answer.", true);
       return;
@@ -130,22 +133,33 @@ export class StartRoom {
 const leftOutRow = ({ what, reason }) => make("li", {}, make("strong", {}, what), `: ${reason}`);
 
 /** @param {string} kind @param {Draft} draft @param {boolean} dry whether it is only looked at */
-const asked = (kind, draft, dry) => ({ kind, files: draft.files, ...draft.keys, dry });
+const asked = (kind, draft, dry) => ({
+  kind, files: draft.files, ...draft.keys, dry, ...(kind === "pattern" ? { guesses: "ask" } : {}),
+});
+
+/** @param {number[]} sizes [mm] */
+const sizeWords = (sizes) => `${sizes.map((x) => x.toFixed(0)).join(" x ")} mm`;
 
 /** What would be taken, and what would not. @param {Seen} seen */
-function seenRows({ notes, sizes, left_out: out }) {
-  const rows = Object.entries(sizes ?? {}).flatMap(([name, value]) => [
-    make("dt", {}, name.replaceAll("_", " ")), make("dd", {}, sizeWords(value)),
-  ]);
+function seenRows(seen) {
+  /** @type {[string, string | false | undefined][]} */
+  const rows = [
+    ["Pieces", `${seen.pieces.length}: ${seen.pieces.map(({ name }) => name).join(", ")}`],
+    ["Largest piece", seen.pieces[0]?.size_mm && sizeWords(largest(seen))],
+    ["Unit of the pattern", seen.mm_per_unit !== undefined && `${seen.mm_per_unit} mm`],
+    ["Design surface", seen.surface_mm && sizeWords(seen.surface_mm)],
+    ["Foam", seen.foam_mm && `${sizeWords(seen.foam_mm)}, read in ${seen.foam_axes?.unit}, ${seen.foam_axes?.up} up`],
+    ["Wires", seen.wires && seen.wires.join(", ")],
+  ];
   return [
-    make("dl", {}, ...rows),
-    ...(notes ?? []).map((note) => make("p", {}, note)),
-    ...(out?.length ? [make("p", {}, "Left out of the file:"), make("ul", { class: "left-out" }, ...out.map(leftOutRow))] : []),
+    make("dl", {}, ...rows.flatMap(([name, value]) => (value ? [make("dt", {}, name), make("dd", {}, value)] : []))),
+    ...seen.notes.map((note) => make("p", { class: "hint" }, note)),
+    ...(seen.left_out.length ? [make("p", {}, "Left out of the file:"), make("ul", {}, ...seen.left_out.map(leftOutRow))] : []),
   ];
 }
 
-/** @param {unknown} value @returns {string} */
-function sizeWords(value) {
-  if (Array.isArray(value)) return value.map(sizeWords).join(" x ");
-  return typeof value === "number" ? String(Number(value.toPrecision(5))) : String(value);
+/** @param {Seen} seen */
+function largest({ pieces }) {
+  const sizes = pieces.map(({ size_mm: size }) => size ?? [0, 0]);
+  return sizes.reduce((best, size) => (Math.max(...size) > Math.max(...best) ? size : best), [0, 0]);
 }
