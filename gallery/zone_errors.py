@@ -2,11 +2,13 @@
 
 Run it with: python gallery/zone_errors.py [--covers N] [--seeds N] [--minutes M]
 
-Each cover is a seat of the family with scale, bolster, tension and one sewing fault drawn at
-random, in each of four materials. It is solved to a tolerance, with the scatter of seeds on its
-first mesh. The truth is the mean over seeds of meshes of one size, half of the finest that the
-tolerance asks for. Rows of docs/charts/zone_errors.csv are not run again, so a run that was stopped
-goes on; --minutes ends it after the cover at hand. A row holds what every mesh found in a zone.
+Each cover is a seat of the family, a third to two thirds as large, with scale, bolster, tension and
+one sewing fault drawn at random, in each of four materials. It is solved to a tolerance, and once
+more with another seed. The truth is the mean over seeds of meshes of one size, half of the finest
+that the tolerance asks for. Rows of docs/charts/zone_errors.csv are not run again, so a run that
+was stopped goes on; --minutes ends it after the cover at hand. A row holds what every mesh found in
+a zone, and the companions are stated from it anew. At the end it is printed in how many zones with
+a mean W2 above 0.02 they hold. The rules were made when covers 0 to 2 were known, and not changed.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import sys
 import tempfile
 import time
 import warnings
+from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +27,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import seatlook
 from seatlook.assembly import with_mesh
-from seatlook.chain.companions import SEEDS
+from seatlook.chain.companions import TwoMeshes, scatters, two_mesh_errors
 from seatlook.chain.local import coarser, finest_size, solve_scene
 from seatlook.errors import InputWarning
 from seatlook.model import Solution
@@ -35,13 +38,14 @@ from support.kept_rows import KeptRows
 from support.random_covers import FAULTS, Draw, named_fault, written
 
 COLUMNS = ("cover", "material", "shape", "scale", "fault", "tolerance_percent", "zone", "area_cm2",
-           "size_mm", "size_before_mm", "estimate", "mean", "mean_before", "seeds", "error",
-           "truth", "truth_size_mm", "status", "cpu_s")  # fmt: skip
+           "size_mm", "size_before_mm", "estimate", "mean", "mean_before", "other_seed", "truth",
+           "truth_size_mm", "status", "cpu_s")  # fmt: skip
 TABLE = KeptRows("zone_errors", COLUMNS)
 MATERIALS = ("black-leather", "leather-laminate", "pvc", "suede-laminate")
 LEAST = 0.02  # mean W2, below which a zone has no wrinkles to speak of
 TOLERANCE = 0.2  # of the solves; a laminate's meshes are finer, as seats have no larger elements
 SEED = 19
+KNOWN = 3  # covers that were looked at when the rules were made
 SMALL = 0.55, 0.5  # times scale and bolster of a headrest, which make the other shapes as large
 family.SCALES = (0.3, 1.6)  # smaller than the family goes: else a finer mesh takes too long
 
@@ -70,35 +74,29 @@ def measure(number: int, material: str, seeds: int) -> list[dict[str, object]]:
         path = written(Path(folder) / "cover", draw, fault)
         scene = seatlook.open(path, tolerance=TOLERANCE).scene
     stated = solve_scene(scene)
+    other = means(solve_scene(with_mesh(scene, seed=scene.seed + 1)))
     own = seatlook.assess(stated)
-    before = coarser(scene)
-    first = before
-    while first.tolerance is not None:
-        first = coarser(first)
-    ladder = [solve_scene(before)] if before.tolerance is not None else []
-    others = [solve_scene(with_mesh(first, seed=scene.seed + k)) for k in range(SEEDS)]
-    ladder += others[:1]
+    before = solve_scene(coarser(scene))
     size = 0.5 * finest_size(scene)
     plain = with_mesh(scene, element_size=size)
     fine = [means(solve_scene(with_mesh(plain, seed=100 + k))) for k in range(seeds)]
     spent = time.process_time() - clock
-    coarse = [means(other) for other in others]
     sizes, estimates = zone_sizes(stated.cover, own.values("w2"))
-    sizes_before, _ = zone_sizes(ladder[0].cover, seatlook.assess(ladder[0]).values("w2"))
-    means_before = means(ladder[0])
+    sizes_before, _ = zone_sizes(before.cover, seatlook.assess(before).values("w2"))
+    means_before = means(before)
     head = (number, material, draw.shape, f"{draw.scale:.3f}",
             " ".join(f"{draw.kind} {k} {v:.1%}" for k, v in fault.items()) or "none",
             f"{100 * TOLERANCE:g}")  # fmt: skip
     rows = []
     for row in own.zones:
         zone = row.zone
-        if zone == FREE_EDGE or not all(zone in one for one in (means_before, *coarse, *fine)):
+        if zone == FREE_EDGE or not all(zone in one for one in (means_before, other, *fine)):
             continue
         rows.append(dict(zip(COLUMNS, (
             *head, zone, f"{1e4 * row.area:.1f}", f"{1e3 * sizes[zone]:.3f}",
             f"{1e3 * sizes_before[zone]:.3f}", f"{estimates[zone]:.4f}", f"{row['w2_mean']:.5f}",
-            f"{means_before[zone]:.5f}", " ".join(f"{one[zone]:.5f}" for one in coarse),
-            f"{row.w2_mesh_error:.5f}", " ".join(f"{one[zone]:.5f}" for one in fine),
+            f"{means_before[zone]:.5f}", f"{other[zone]:.5f}",
+            " ".join(f"{one[zone]:.5f}" for one in fine),
             f"{1e3 * size:.2f}", own.resolution.status, f"{spent:.0f}",
         ), strict=True)))  # fmt: skip
     return rows
@@ -109,8 +107,48 @@ def means(solution: Solution) -> dict[str, float]:
     return {row.zone: row["w2_mean"] for row in seatlook.assess(solution).zones}
 
 
+def judged(rows: list[dict[str, str]]) -> list[tuple[int, bool, float]]:
+    """Number of the cover, whether the companions hold, how large they are, of wrinkled zones."""
+    solves: dict[tuple[str, str], list[dict[str, str]]] = defaultdict(list)
+    for row in rows:
+        solves[row["cover"], row["material"]].append(row)
+    found = []
+    for own in solves.values():
+        errors = two_mesh_errors([
+            TwoMeshes(
+                zone=row["zone"], mean=float(row["mean"]), before=float(row["mean_before"]),
+                ratio=float(row["size_before_mm"]) / float(row["size_mm"]),
+                estimate=float(row["estimate"]),
+            )
+            for row in own
+        ])  # fmt: skip
+        seeds = [{row["zone"]: float(row[key]) for row in own} for key in ("mean", "other_seed")]
+        width = scatters({row["zone"]: 1e-4 * float(row["area_cm2"]) for row in own}, seeds)
+        for row in own:
+            truth = float(np.mean([float(mean) for mean in row["truth"].split()]))
+            if truth > LEAST:
+                away = abs(float(row["mean"]) - truth)
+                stated = errors[row["zone"]] + width[row["zone"]]
+                found.append((int(row["cover"]), away <= stated, stated / max(away, 1e-9)))
+    return found
+
+
+def summary(rows: list[dict[str, str]]) -> str:
+    """How often the companions hold, how large they are: covers known to the rules, and others."""
+    lines = []
+    for name, known in (("known", True), ("other", False)):
+        own = [found[1:] for found in judged(rows) if (found[0] < KNOWN) == known]
+        if own:
+            held, ratios = zip(*own, strict=True)
+            lines.append(
+                f"{name} covers: {sum(held)} of {len(held)} zones hold "
+                f"({100 * np.mean(held):.0f} %); stated over true error {np.median(ratios):.1f}"
+            )
+    return "\n".join(lines)
+
+
 def main() -> None:
-    """Run what is missing."""
+    """Run what is missing, and sum up."""
     warnings.simplefilter("ignore", InputWarning)
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--covers", type=int, default=10)
@@ -123,11 +161,11 @@ def main() -> None:
             done = {(row["cover"], row["material"]) for row in TABLE.read()}
             if (str(number), material) in done:
                 continue
-            if time.monotonic() - begin > 60.0 * options.minutes:
-                return
-            rows = measure(number, material, options.seeds)
-            TABLE.add(rows)
-            print(number, material, f"{rows[0]['cpu_s']} CPU s", flush=True)
+            if time.monotonic() - begin <= 60.0 * options.minutes:
+                rows = measure(number, material, options.seeds)
+                TABLE.add(rows)
+                print(number, material, f"{rows[0]['cpu_s']} CPU s", flush=True)
+    print(summary(TABLE.read()))
 
 
 if __name__ == "__main__":

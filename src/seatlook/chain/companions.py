@@ -11,14 +11,23 @@ import numpy as np
 from scipy.stats import norm, t
 
 from seatlook.model import Solution
+from seatlook.results.needed_sizes import SMALL
 from seatlook.wrinkle import ZoneRow
 from seatlook.wrinkle.zone import companion_keys
 
 SURE = 0.95  # of single solves that differ from the mean of all seeds by less than the scatter
 ORDERS = (1.0, 2.0)  # between which means converge: of a kink, and of a smooth wave
 _CAUTION = 0.4  # by which an observed order is taken lower: scatter makes it uncertain
-SEEDS = 5  # that tell the scatter
+SEEDS = 2  # that tell the scatter, with the result's own
+_USUAL = (
+    3e-3  # m: a standard deviation, as a share of the mean, is usually this over a zone's width
+)
+_EARLIER = 2.0  # seeds and zones of other covers that it stands for; gallery/zone_errors.py
+_POOLED = 10.0  # seeds of a zone that the pooled variance stands for
 APART = 1.3  # times as large elements, from which a difference of two meshes is one of sizes
+_FALLING = (
+    2.0  # times the estimate errs a mean that falls from the coarser to the finer mesh, at most
+)
 _ORDER = 1.5  # of two meshes' means: 2 where there are waves, 1 at the kink of a hooked seam
 _SEEDS = "scatter_seeds"  # figure of a result
 _POWER = 0.8  # chance to see a difference that is there, of the number of seeds
@@ -137,17 +146,62 @@ class TwoMeshes:
 def two_mesh_errors(zones: Sequence[TwoMeshes]) -> dict[str, float]:
     """Error of the mean W2 of each zone of a mesh, from one that is coarser where it wrinkles.
 
-    A zone errs by the difference of its means, extrapolated. Where both meshes are alike, as they
-    are where little wrinkles, it errs by the estimate that sized them. A mean that falls errs by no
-    more than itself, since W2 is nowhere below zero.
+    Waves as short as the fabric makes them err by the estimate that sized the mesh: no zone errs by
+    less. Where the means rise, a zone errs by their difference, extrapolated, if that is more: at
+    the kink of a seam means converge more slowly than on a wave. Where they fall, single elements
+    were folded sharply on the coarser mesh, which says little of the finer one: twice the estimate
+    is the most. W2 is nowhere below zero, so no mean that falls errs by more than itself.
     """
     errors = {}
     for zone in zones:
-        errors[zone.zone] = zone.estimate * zone.mean
-        if zone.ratio >= APART and math.isfinite(zone.before):
-            rise = (zone.mean - zone.before) / (zone.ratio**_ORDER - 1.0)
-            errors[zone.zone] = rise if rise >= 0.0 else min(-rise, zone.mean)
+        share = zone.estimate
+        if zone.ratio >= APART and math.isfinite(zone.before) and zone.mean > 0.0:
+            rise = (zone.mean - zone.before) / (zone.ratio**_ORDER - 1.0) / zone.mean
+            if rise >= 0.0:
+                share = max(rise, share)
+            else:
+                share = min(max(-rise, share), _FALLING * share, 1.0)
+        errors[zone.zone] = share * zone.mean
     return errors
+
+
+def scatters(areas: Mapping[str, float], seeds: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """95 % half-width of the mean W2 of each zone for another seed.
+
+    Parameters
+    ----------
+    areas : zone -> [m2]
+    seeds : zone -> mean W2, of each seed on a mesh of the same sizes; the first is that of the
+        result. Two or more
+
+    Notes
+    -----
+    A zone is a mean over places that wrinkle by chance, so its variance goes with one over its
+    area. Variance times area is pooled over the zones of the cover and with what was found on other
+    covers; a zone's own variance counts beside it, as by so many seeds (moderated variances: Smyth
+    2004, Stat. Appl. Genet. Mol. Biol. 3, 3). Two seeds then tell as much as a dozen.
+
+    Examples
+    --------
+    >>> areas = {"small": 0.001, "large": 0.1}
+    >>> width = scatters(areas, [{"small": 0.2, "large": 0.2}, {"small": 0.2, "large": 0.2}])
+    >>> round(width["small"] / width["large"], 1)
+    10.0
+    """
+    own, free = seeds[0], len(seeds) - 1
+    shares = {}
+    for zone in own:
+        values = np.array([one[zone] for one in seeds if zone in one])
+        if len(values) == len(seeds):
+            shares[zone] = float(values.std(ddof=1)) / max(float(values.mean()), SMALL)
+    pooled = _EARLIER * _USUAL**2 + free * sum(shares[z] ** 2 * areas[z] for z in shares)
+    pooled /= _EARLIER + free * len(shares)
+    result = {}
+    for zone, mean in own.items():
+        square = _POOLED * pooled / areas[zone] + free * shares.get(zone, 0.0) ** 2
+        square /= _POOLED + (free if zone in shares else 0)
+        result[zone] = half_width(len(seeds)) * math.sqrt(square) * max(mean, SMALL)
+    return result
 
 
 def scatter(seeds: Sequence[Sequence[ZoneRow]], row: ZoneRow) -> float:
@@ -160,12 +214,13 @@ def scatter(seeds: Sequence[Sequence[ZoneRow]], row: ZoneRow) -> float:
         return math.nan
     if values.mean() <= 0.0:
         return 0.0
-    return half_width(len(values)) * float(values.std(ddof=1) / values.mean()) * row["w2_mean"]
+    width = float(t.ppf(0.5 + 0.5 * SURE, len(values) - 1)) * math.sqrt(1.0 + 1.0 / len(values))
+    return width * float(values.std(ddof=1) / values.mean()) * row["w2_mean"]
 
 
 def half_width(seeds: int) -> float:
-    """95 % half-width of one more solve, in standard deviations of some that were made."""
-    return float(t.ppf(0.5 + 0.5 * SURE, seeds - 1)) * math.sqrt(1.0 + 1.0 / seeds)
+    """95 % half-width of one solve about the mean of all, in pooled standard deviations."""
+    return float(t.ppf(0.5 + 0.5 * SURE, _POOLED + seeds - 1))
 
 
 def seeds_needed(spread: float, share: float = 0.2) -> int:

@@ -53,8 +53,8 @@ def compare(
         NAME=RESULT.npz: take this result of the scene called NAME; may be given more than once.
     tolerance
         Solve each scene to this relative error of its zone means, such as 0.1, on a mesh that is
-        fine where it wrinkles; five seeds of its first mesh tell the scatter. Materials are
-        compared at equal error, not at equal element size.
+        fine where it wrinkles, and once more with another seed, which tells the scatter.
+        Materials are compared at equal error, not at equal element size.
     """
     from seatlook.comparison.compare import at_equal_error, variant_names
     from seatlook.pbr import offscreen_backend
