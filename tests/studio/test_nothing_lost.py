@@ -11,9 +11,9 @@ from http.client import HTTPException
 import pytest
 
 from seatlook.io.scene.read import load_scene
-from seatlook.studio.durable import prepared
 from seatlook.studio.folder import Folder
-from seatlook.studio.journal import Change, Journal
+from seatlook.studio.keeping.durable import prepared
+from seatlook.studio.keeping.journal import Change, Journal
 from seatlook.studio.session import Session
 from support.scene_files import write_two_panels
 from support.studio import studio, studio_process

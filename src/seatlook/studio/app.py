@@ -10,7 +10,7 @@ from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.middleware import Middleware
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import FileResponse, HTMLResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from seatlook.errors import InputError, SeatlookError
@@ -18,9 +18,17 @@ from seatlook.studio.guard import Door, Guard
 from seatlook.studio.picking import partner
 from seatlook.studio.session import Clash, Session
 from seatlook.studio.shell import page
-from seatlook.studio.state import problem_values
+from seatlook.studio.starting import UPLOADS, preview
+from seatlook.studio.state import material_values, problem_values
+from seatlook.studio.uploads import receive
+from seatlook.studio.work import Work
 
 LARGEST_REQUEST = 2**20  # bytes of what is posted, uploads apart
+# A page of results runs apart from the studio: it may not ask the server for anything else.
+APART = {
+    "content-security-policy": "sandbox allow-scripts allow-downloads allow-popups",
+    "cross-origin-resource-policy": "cross-origin",
+}
 Handler = Callable[[Request], Awaitable[Response]]
 
 
@@ -30,6 +38,7 @@ class TooLarge(Exception):  # noqa: N818 -- it says what is wrong
 
 def make_app(session: Session, door: Door) -> Starlette:
     """Put a session behind its guard."""
+    work = Work(session, door)
     routes = [
         Route("/", _page),
         Route("/api/state", _answering(_state)),
@@ -37,9 +46,21 @@ def make_app(session: Session, door: Door) -> Starlette:
         Route("/api/partner", _answering(_partner), methods=["POST"]),
         Route("/api/undo", _answering(_undo), methods=["POST"]),
         Route("/api/redo", _answering(_redo), methods=["POST"]),
+        Route("/api/assembly", _answering(_assembly)),
+        Route("/api/materials", _answering(_materials)),
+        Route("/api/start", _answering(_start), methods=["POST"]),
+        Route("/api/upload", _answering(_upload), methods=["POST"]),
+        Route("/api/runs", _answering(_runs)),
+        Route("/api/run", _answering(_run), methods=["POST"]),
+        Route("/api/run/cancel", _answering(_cancel), methods=["POST"]),
+        Route("/api/warm", _answering(_warm), methods=["POST"]),
+        Route("/api/events", _answering(_events)),
+        Route(f"{door.results_path}/{{path:path}}", _answering(_result)),
     ]
-    app = Starlette(routes=routes, middleware=[Middleware(Guard, door=door)])
-    app.state.session = session
+    app = Starlette(
+        routes=routes, middleware=[Middleware(Guard, door=door)], lifespan=work.lifespan
+    )
+    app.state.work = work
     return app
 
 
@@ -49,7 +70,7 @@ async def _page(request: Request) -> Response:
 
 
 async def _state(request: Request) -> Response:
-    return answer(await run_in_threadpool(session_of(request).state))
+    return answer(await run_in_threadpool(work_of(request).state))
 
 
 async def _edit(request: Request) -> Response:
@@ -57,7 +78,15 @@ async def _edit(request: Request) -> Response:
     edits = asked.get("edits")
     if not isinstance(edits, list) or not edits:
         raise InputError.single("edits", got=repr(edits)[:60], expected="a list of edits")
-    return answer(await run_in_threadpool(session_of(request).edit, asked.get("base"), edits))
+    return await _stated(request, session_of(request).edit, asked.get("base"), edits)
+
+
+async def _stated(
+    request: Request, change: Callable[..., Mapping[str, Any]], *given: Any
+) -> Response:
+    """The state that a change leaves, with the runs."""
+    values = await run_in_threadpool(change, *given)
+    return answer({**values, "runs": await run_in_threadpool(work_of(request).run_values)})
 
 
 async def _partner(request: Request) -> Response:
@@ -73,18 +102,77 @@ async def _partner(request: Request) -> Response:
 
 async def _undo(request: Request) -> Response:
     asked = await posted(request)
-    return answer(await run_in_threadpool(session_of(request).undo, asked.get("base")))
+    return await _stated(request, session_of(request).undo, asked.get("base"))
 
 
 async def _redo(request: Request) -> Response:
     asked = await posted(request)
-    return answer(await run_in_threadpool(session_of(request).redo, asked.get("base")))
+    return await _stated(request, session_of(request).redo, asked.get("base"))
+
+
+async def _assembly(request: Request) -> Response:
+    return answer(await run_in_threadpool(work_of(request).assembly_values))
+
+
+async def _materials(request: Request) -> Response:
+    folder = session_of(request).folder
+    return answer({"materials": await run_in_threadpool(material_values, folder)})
+
+
+async def _start(request: Request) -> Response:
+    asked, work = await posted(request), work_of(request)
+    if asked.get("dry"):
+        return answer(await run_in_threadpool(preview, work.session.folder, asked))
+    return answer(await run_in_threadpool(work.start, asked))
+
+
+async def _upload(request: Request) -> Response:
+    folder, name = session_of(request).folder, request.query_params.get("name", "")
+    path, count = await receive(folder.inside(UPLOADS), name, request.stream())
+    return answer({"path": path.relative_to(folder.root).as_posix(), "bytes": count})
+
+
+async def _runs(request: Request) -> Response:
+    return answer({"runs": await run_in_threadpool(work_of(request).run_values)})
+
+
+async def _run(request: Request) -> Response:
+    asked, work = await posted(request), work_of(request)
+    return answer({"run": await run_in_threadpool(work.run, asked)})
+
+
+async def _warm(request: Request) -> Response:
+    asked = await posted(request)
+    return answer(await run_in_threadpool(work_of(request).warm, asked))
+
+
+async def _cancel(request: Request) -> Response:
+    await posted(request)
+    await run_in_threadpool(work_of(request).runs.cancel)
+    return answer({"runs": await run_in_threadpool(work_of(request).run_values)})
+
+
+async def _events(request: Request) -> Response:
+    return StreamingResponse(work_of(request).events(request), media_type="text/event-stream")
+
+
+async def _result(request: Request) -> Response:
+    path = session_of(request).folder.inside(request.path_params["path"])
+    shown = path.relative_to(session_of(request).folder.root).parts
+    if not path.is_file() or any(part.startswith(".") for part in shown):
+        return _said("no such result", 404)
+    return FileResponse(path, headers=APART)
+
+
+def work_of(request: Request) -> Work:
+    """What the server was started with."""
+    work: Work = request.app.state.work
+    return work
 
 
 def session_of(request: Request) -> Session:
     """The session that the server was started with."""
-    session: Session = request.app.state.session
-    return session
+    return work_of(request).session
 
 
 async def posted(request: Request) -> dict[str, Any]:

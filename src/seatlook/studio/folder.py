@@ -16,7 +16,7 @@ REFUSED = f"{OWN}/refused.toml"
 SCENE = "scene.toml"
 MATERIALS = "materials"  # of the folder, in their own folder
 
-_MOST_MATERIALS = 100
+_MOST_FILES = 100
 
 Contents = Mapping[str, bytes]  # path seen from the folder -> what the file holds
 
@@ -71,13 +71,17 @@ class Folder:
     @property
     def signature(self) -> str:
         """What tells whether files that are read, but not changed by clicks, are others now."""
+        own = [state_of(path) for path in sorted(self.root.glob("*.toml"))[:_MOST_FILES]]
+        return self.signature_of("pattern", "foam", "design") + repr(own)
+
+    def signature_of(self, *tables: str) -> str:
+        """The same for the files of these tables of the scene."""
         scene = self.scene
         if scene is None:
             return ""
         data = parsed(read_file(self.root / scene, at_most=LARGEST_TEXT))
-        names = [_text(data, table, "file") for table in ("pattern", "foam", "design")]
-        paths = [self.root / name for name in names if name is not None]
-        return repr([state_of(path) for path in [*paths, *sorted(self.root.glob("*.toml"))[:200]]])
+        names = [_text(data, table, "file") for table in tables]
+        return repr([state_of(self.root / name) for name in names if name is not None])
 
     def _named(self, scene: str) -> list[str]:
         """Files of seams and curves that a scene names, of those inside the folder."""
@@ -86,7 +90,7 @@ class Folder:
         own = sorted((self.root / MATERIALS).glob("*.toml"))
         return [
             *(name for name in names if name is not None),
-            *(path.relative_to(self.root).as_posix() for path in own[:_MOST_MATERIALS]),
+            *(path.relative_to(self.root).as_posix() for path in own[:_MOST_FILES]),
         ]
 
 

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any, Literal
 
 from seatlook.errors import InputError
-from seatlook.studio.durable import prepared, put_in_place
 from seatlook.studio.edits.draft import Draft, Gone
 from seatlook.studio.edits.kinds import make
 from seatlook.studio.folder import OWN, Contents, Folder, etag
-from seatlook.studio.journal import Change, Files, Journal
-from seatlook.studio.merge import changed, merged, touching
+from seatlook.studio.keeping.durable import prepared, put_in_place
+from seatlook.studio.keeping.journal import Change, Files, Journal
+from seatlook.studio.keeping.merge import changed, merged, touching
 from seatlook.studio.reading import Reading, read
 from seatlook.studio.state import state_values
 
@@ -59,11 +59,15 @@ class Session:
 
     def reading(self) -> Reading:
         """What the files say."""
+        return self.now()[2]
+
+    def now(self) -> tuple[str, Contents, Reading]:
+        """What tells this state, what the files hold, and what they say."""
         with self._lock:
-            self._now()
+            tag = str(self._now()["etag"])
             if self._reading is None:
                 raise InputError.single("folder", got="nothing", expected="a scene")
-            return self._reading
+            return tag, self._known[tag], self._reading
 
     def edit(self, base: object, edits: Sequence[Any]) -> Mapping[str, Any]:
         """Make edits of the state ``base`` and return the new one.

@@ -6,7 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from seatlook.errors import Problem
-from seatlook.studio.folder import REFUSED, Contents, Folder, etag, parsed
+from seatlook.files import LARGEST_TEXT, read_file
+from seatlook.io.material import materials_dir
+from seatlook.studio.folder import MATERIALS, REFUSED, Contents, Folder, etag, parsed
 from seatlook.studio.pattern_state import (
     Values,
     guess_values,
@@ -59,6 +61,19 @@ def problem_values(folder: Folder, problem: Problem) -> Values:
         "key": problem.key,
         "text": f"{said} ({problem.hint})" if problem.hint else said,
     }
+
+
+def material_values(folder: Folder) -> list[Values]:
+    """All materials: those that come with seatlook, and those of the folder."""
+    supplied = [(path.stem, path) for path in sorted(materials_dir().glob("*.toml"))]
+    paths = sorted(folder.inside(MATERIALS).glob("*.toml"))
+    own = [(path.relative_to(folder.root).as_posix(), path) for path in paths]
+    found = []
+    for name, path in [*own, *supplied]:
+        values = parsed(read_file(path, at_most=LARGEST_TEXT))
+        kind = "foam" if "foam" in values else "cover" if "fabric" in values else "look"
+        found.append({"name": name, "kind": kind, "own": (name, path) in own, "values": values})
+    return found
 
 
 def _wires(reading: Reading) -> list[Values]:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import InitVar, dataclass, field
+from dataclasses import InitVar, dataclass, field, replace
 from typing import Any
 
 from seatlook.errors import InputError
+from seatlook.files import standing_in
+from seatlook.io.scene.read import load_pattern
 from seatlook.io.toml import Key
 from seatlook.io.toml_edit import drop, put
 from seatlook.model import Pattern
-from seatlook.studio.folder import Contents, Folder, parsed
-from seatlook.studio.reading import Reading, read
+from seatlook.studio.folder import Folder, parsed
+from seatlook.studio.pattern_state import Values, guess_values
+from seatlook.studio.reading import Reading, on_disk, read
 
 Edit = Mapping[str, Any]
 _MARK = "\ufeff"  # of byte order, as some editors write it
@@ -36,6 +39,8 @@ class Draft:
     scene: str
     known: InitVar[Reading | None] = None
     _reading: Reading | None = field(default=None, init=False)
+    _pattern: Pattern | None = field(default=None, init=False)
+    _guesses: Mapping[str, Values] | None = field(default=None, init=False)
 
     def __post_init__(self, known: Reading | None) -> None:
         self._reading = known
@@ -49,16 +54,27 @@ class Draft:
 
     @property
     def pattern(self) -> Pattern:
-        """The pattern and its seams.
+        """The pattern and its seams, whatever else may be wrong.
 
         Raises
         ------
         InputError
             It cannot be read.
         """
-        if self.reading.pattern is None:
-            raise InputError(self.reading.problems)
-        return self.reading.pattern
+        if self._reading is not None and self._reading.pattern is not None:
+            return self._reading.pattern
+        if self._pattern is None:
+            with standing_in(on_disk(self.folder, self.contents)):
+                self._pattern = load_pattern(self.folder.root / self.scene)
+        return self._pattern
+
+    @property
+    def guesses(self) -> Mapping[str, Values]:
+        """All seams that are guessed, by their names, also those that are sewn by now."""
+        if self._guesses is None:
+            found = guess_values(replace(self.pattern, seams=()), ())
+            self._guesses = {guess["id"]: guess for guess in found}
+        return self._guesses
 
     @property
     def data(self) -> dict[str, Any]:
@@ -86,7 +102,7 @@ class Draft:
         content = self.contents.get(name, b"").decode("utf-8")
         mark = _MARK if content.startswith(_MARK) else ""
         self.contents[name] = (mark + edit(content.removeprefix(_MARK))).encode()
-        self._reading = None
+        self._reading = self._pattern = None
 
     def put(self, key: Key, value: object) -> None:
         """Set a key of the scene; None takes it out."""
@@ -109,8 +125,3 @@ def wanted(edit: Edit, key: str, *kinds: type) -> Any:
         expected = " or ".join(kind.__name__ for kind in kinds)
         raise InputError.single(f"{edit.get('kind')}.{key}", got=repr(value), expected=expected)
     return value
-
-
-def unchanged(before: Contents, after: Contents) -> bool:
-    """Whether edits changed nothing."""
-    return dict(before) == dict(after)

@@ -11,7 +11,7 @@ from seatlook.errors import InputError
 from seatlook.io.toml_edit import add_row, add_table, drop, put
 from seatlook.model import Panel, Pattern
 from seatlook.studio.edits.draft import Draft, Edit, Gone, wanted
-from seatlook.studio.pattern_state import guess_values, millimetres, steps_of
+from seatlook.studio.pattern_state import millimetres, steps_of
 from seatlook.studio.picking import nearest_corner, panel_of, place_of, stretch_between
 
 _SNAP = 0.002  # m, as far as the seams file is read
@@ -107,16 +107,11 @@ def change(draft: Draft, edit: Edit) -> None:
 
 def accept(draft: Draft, edit: Edit) -> None:
     """Sew what was guessed."""
-    guess = _guess(draft, wanted(edit, "id", str))
+    guess = draft.guesses.get(wanted(edit, "id", str))
+    if guess is None:
+        raise Gone(f"there is no guess {edit['id']} any more")
     comment = f"probability {guess['probability']:.2f}: {guess['reason']}"
     add(draft, {**edit, **{k: guess[k] for k in ("first", "second")}, "comment": comment})
-
-
-def _guess(draft: Draft, name: str) -> Mapping[str, Any]:
-    for guess in guess_values(draft.pattern, ()):
-        if guess["id"] == name:
-            return guess
-    raise Gone(f"the guess {name} is sewn already, or its edges are")
 
 
 def _edges(draft: Draft, side: Mapping[str, Any], name: str) -> list[str]:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from seatlook.studio.durable import prepared, put_in_place, sync_folder
+from seatlook.studio.keeping.durable import prepared, put_in_place, sync_folder
 
 Files = Mapping[str, bytes | None]  # name -> content, None where there is no file
 _MOST_BYTES = 4 * 2**20  # of a journal; beyond, only the last changes are kept

@@ -1,0 +1,1 @@
+"""What was changed stays: files written whole, the journal, changes put together."""
