@@ -28,14 +28,16 @@ async function start() {
     renderer.refill(shown());
     renderer.restart();
     while (renderer.rest(shown(), samples));
-    const { gl } = renderer, { width, height, frame } = renderer.targets.sum;
+    const { gl } = renderer, { width, height, sum: frame } = renderer.seen;
     const sum = new Float32Array(4 * width * height), out = new Float32Array(3 * width * height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, sum);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    const white = 1.2 * Math.pow(2, shown().ev100) / renderer.done;
+    const white = 1.2 * Math.pow(2, shown().ev100) / renderer.done, paper = renderer.paper(shown());
     for (let k = 0; k < width * height; ++k) {
-      for (let c = 0; c < 3; ++c) out[3 * k + c] = white * sum[4 * k + c];
+      for (let c = 0; c < 3; ++c) {
+        out[3 * k + c] = white * (sum[4 * k + c] + (renderer.done - sum[4 * k + 3]) * paper[c]);
+      }
     }
     const bytes = new Uint8Array(out.buffer);
     let text = "";
@@ -52,8 +54,10 @@ async function start() {
     const before = performance.now();
     for (let k = 0; k < count; ++k) {
       scene.camera.turn(0.02, 0);
-      renderer.sample(shown(), [Math.round(width / scale), Math.round(height / scale)], 0, 1, "coarse");
-      renderer.display(renderer.targets.coarse.texture, 1, shown());
+      const size = [Math.round(width / scale), Math.round(height / scale)];
+      renderer.seen.clear();
+      renderer.sample(shown(), size, 0, 1);
+      renderer.display(size, 1, shown());
       renderer.wait();
     }
     scene.camera.state = state;

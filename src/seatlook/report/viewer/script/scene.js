@@ -95,12 +95,13 @@ export class Scene {
   /** Materials and the number of each part's among them; the foam, which comes last, keeps its own. */
   materials() {
     const numbers = this.content.looks[this.lookNumber].materials;
-    const foam = numbers.length - 1;
-    const materials = numbers.map((number, part) => {
-      const own = this.content.materials[number];
-      return part === foam ? own : this.changed(own);
-    });
-    return { materials, look: numbers.map((_, part) => part) };
+    const cover = numbers.slice(0, -1), foam = numbers[numbers.length - 1];
+    const used = [...new Set(cover)];
+    const { materials } = this.content;
+    return {
+      materials: [...used.map((number) => this.changed(materials[number])), materials[foam]],
+      look: [...cover.map((number) => used.indexOf(number)), used.length],
+    };
   }
 
   /** @returns {Omit<Choice, "photo">} */

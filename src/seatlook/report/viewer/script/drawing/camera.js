@@ -58,10 +58,32 @@ export class Camera {
    * @param {number[]} shift
    */
   matrix(aspect, reach, middle, shift = [0, 0]) {
-    const away = norm(minus(this.position, middle));
-    const near = Math.max(away - reach, 0.01);
+    const [near, far] = this.planes(reach, middle);
     const view = lookAt(this.position, this.state.target, this.up);
-    return product(perspective(this.half(aspect), aspect, near, away + reach, shift), view);
+    return product(perspective(this.half(aspect), aspect, near, far, shift), view);
+  }
+
+  /** Distances between which is drawn. @param {number} reach @param {number[]} middle */
+  planes(reach, middle) {
+    const away = norm(minus(this.position, middle));
+    return [Math.max(away - reach, 0.01), away + reach];
+  }
+
+  /**
+   * The matrix for shaders, and what they need to find a place again by its pixel and depth.
+   * @param {number} aspect
+   * @param {number} reach
+   * @param {number[]} middle
+   * @param {number[]} shift
+   */
+  uniforms(aspect, reach, middle, shift) {
+    const ahead = unit(minus(this.state.target, this.position)), right = unit(cross(ahead, this.up));
+    const half = this.half(aspect);
+    return {
+      uCamera: this.matrix(aspect, reach, middle, shift), uEye: this.position, uAlong: ahead, uShift: shift,
+      uRight: right.map((c) => half * aspect * c), uTop: cross(right, ahead).map((c) => half * c),
+      uPlanes: this.planes(reach, middle),
+    };
   }
 
   /**

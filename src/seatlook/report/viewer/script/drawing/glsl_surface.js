@@ -1,63 +1,9 @@
-// The seat in GLSL: detail, lights, sky; the maps laid over it; shadow maps; the display.
+// Shading in GLSL of what each pixel sees: detail, lights, sky; the maps laid over it; the display.
 
 import { BRDF, MATERIALS } from "./glsl_brdf.js";
+import { SEEN } from "./glsl_seen.js";
 
 export const MOST_LIGHTS = 8;
-
-export const VERTEX = `
-layout(location = 0) in vec3 inPosition;
-layout(location = 1) in vec2 inNormal;
-layout(location = 2) in vec2 inPattern;
-layout(location = 3) in vec2 inSeam;
-layout(location = 4) in vec3 inWarp;
-layout(location = 5) in float inOpen;
-layout(location = 6) in float inMap;
-uniform mat4 uCamera;
-uniform vec3 uLow;
-uniform vec3 uStep;
-uniform vec4 uPatternRange;
-uniform vec2 uSeamRange;
-out vec3 vPosition;
-out vec3 vNormal;
-out vec2 vPattern;
-out vec2 vSeam;
-out vec3 vWarp;
-out float vOpen;
-out float vMap;
-
-void main() {
-  vPosition = uLow + uStep * inPosition;
-  vec3 n = vec3(inNormal, 1.0 - abs(inNormal.x) - abs(inNormal.y));
-  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
-  vNormal = normalize(n);
-  vPattern = uPatternRange.xy + uPatternRange.zw * inPattern;
-  // Beyond the reach nothing is known: far away, and so is what lies between.
-  vSeam = inSeam.x > 65534.5 ? vec2(1e3, 0.0) : uSeamRange * inSeam / 65534.0;
-  vWarp = inWarp;
-  vOpen = inOpen;
-  vMap = inMap;
-  gl_Position = uCamera * vec4(vPosition, 1.0);
-}
-`;
-
-export const DEPTH = `
-layout(location = 0) in vec3 inPosition;
-uniform mat4 uCamera;
-uniform vec3 uLow;
-uniform vec3 uStep;
-void main() { gl_Position = uCamera * vec4(uLow + uStep * inPosition, 1.0); }
-`;
-
-const INPUTS = `
-in vec3 vPosition;
-in vec3 vNormal;
-in vec2 vPattern;
-in vec2 vSeam;
-in vec3 vWarp;
-in float vOpen;
-in float vMap;
-uniform vec3 uEye;
-`;
 
 // Grain, seams and holes, see pbr/kernels/grain.py, stitch.py and detail.py.
 const DETAIL = `
@@ -142,33 +88,25 @@ vec4 seamRelief(float distance, float arc, float width) {
   return vec4(away, 0.0, share, 0.0);
 }
 
-// Gradient of a value over the surface, from what changes between pixels.
-vec3 gradient(vec3 px, vec3 py, vec3 plane, float dx, float dy) {
-  vec3 r1 = cross(py, plane), r2 = cross(plane, px);
-  float det = dot(px, r1);
-  return abs(det) < 1e-16 ? vec3(0.0) : (r1 * dx + r2 * dy) / det;
-}
-
-Detail detailOf(Material m, vec3 n, vec3 plane, vec3 v, vec3 warp, vec3 weft, float reach) {
+Detail detailOf(Material m, Seen seen, vec3 n, vec3 v, vec3 warp, vec3 weft, float reach) {
   Detail d = Detail(n, m.albedo, m.roughness, 1.0, 0.0);
   float cosine = max(0.05, dot(n, v));
   float width = reach * uPixel / sqrt(cosine);
-  vec3 px = dFdx(vPosition), py = dFdy(vPosition);
   float share = 1.0, own = 0.0;
   if (PHOTO && uPhotoSize.x > 0.0) {
     float texel = sqrt(uPhotoSize.x / uPhotoSize.z * uPhotoSize.y / uPhotoSize.w);
-    d.colour = textureLod(uPhoto, vPattern / uPhotoSize.xy, max(0.0, log2(0.5 * width / texel))).rgb;
+    d.colour = textureLod(uPhoto, seen.pattern / uPhotoSize.xy, max(0.0, log2(0.5 * width / texel))).rgb;
   }
   if (RELIEF && uTexture >= 0) {
     float wide = uTexture == WEAVE ? width * max(1.0, 4.0 * width / uGrain.x) : width;
     // Samples of a relief are finer than those of one lobe: what they leave out averages away.
     float texel = uRelief.x / uRelief.y;
     float level = max(0.0, log2(0.5 * wide / texel));
-    vec4 t = textureLod(uSlopes, vPattern / uRelief.x, level);
+    vec4 t = textureLod(uSlopes, seen.pattern / uRelief.x, level);
     float steep = uGrain.y / uGrain.x;
     float variance = max(0.0, t.z - 0.5 * dot(t.xy, t.xy));
     d.n = normalize(d.n - steep * t.x * warp - steep * t.y * weft);
-    share = t.w * (NAP && uTexture == SUEDE ? stroke(vPattern) : 1.0);
+    share = t.w * (NAP && uTexture == SUEDE ? stroke(seen.pattern) : 1.0);
     if (uTexture == WEAVE || STRETCH && m.anisotropy != 0.0) {
       float alpha = m.roughness * m.roughness;
       d.roughness = min(1.0, sqrt(sqrt(alpha * alpha + 2.0 * steep * steep * variance)));
@@ -176,19 +114,13 @@ Detail detailOf(Material m, vec3 n, vec3 plane, vec3 v, vec3 warp, vec3 weft, fl
       d.wider = 2.0 * steep * steep * variance;
     }
   }
-  if (HOLES && uHoles.y > 0.0) d.left = 1.0 - holes(vPattern, width);
-  float distance = vSeam.x;
-  if (distance < uThread.x + 6.0 * PRESS_WIDTH + uThread.w) {
-    vec3 away = gradient(px, py, plane, dFdx(vSeam.x), dFdy(vSeam.x));
-    vec3 onward = gradient(px, py, plane, dFdx(vSeam.y), dFdy(vSeam.y));
-    // Where the nearest seam changes, the length along it jumps: no stitch crosses that.
-    if (dot(onward, onward) < 4.0) {
-      vec4 seam = seamRelief(distance, vSeam.y, reach * uPixel / sqrt(max(0.05, abs(dot(plane, v)))));
-      d.n = normalize(d.n - seam.x * away - seam.y * onward);
-      share *= seam.z;
-      own = seam.w * uThreadColour.a;
-      d.roughness += seam.w * max(0.0, 0.6 - d.roughness);
-    }
+  if (HOLES && uHoles.y > 0.0) d.left = 1.0 - holes(seen.pattern, width);
+  if (SEWN && seen.seam.x < uThread.x + 6.0 * PRESS_WIDTH + uThread.w) {
+    vec4 seam = seamRelief(seen.seam.x, seen.seam.y, reach * uPixel / sqrt(max(0.05, abs(dot(seen.plane, v)))));
+    d.n = normalize(d.n - seam.x * seen.away - seam.y * seen.onward);
+    share *= seam.z;
+    own = seam.w * uThreadColour.a;
+    d.roughness += seam.w * max(0.0, 0.6 - d.roughness);
   }
   d.colour = d.colour * (share * (1.0 - own)) + own * uThreadColour.rgb;
   return d;
@@ -221,40 +153,36 @@ float lit(int k, vec3 p) {
 `;
 
 // Radiance over that which is just white.
-export const SHADE = `${INPUTS}${BRDF}${MATERIALS}${DETAIL}${LIGHT}
+export const SHADE = `${SEEN}${BRDF}${MATERIALS}${DETAIL}${LIGHT}
 uniform int uRow;
 uniform float uWhite;
 uniform float uSpread;
 out vec4 oRadiance;
 
-void main() {
+vec4 shaded() {
   Material m = materialOf(uRow);
-  vec3 v = uEye - vPosition;
+  Seen seen = seenAt();
+  vec3 v = uEye - seen.position;
   float reach = length(v);
   v /= reach;
-  vec3 plane = normalize(cross(dFdx(vPosition), dFdy(vPosition)));
-  if (dot(plane, v) < 0.0) plane = -plane;
-  vec3 n = normalize(vNormal);
-  if (dot(plane, n) < 0.0) n = -n;
+  vec3 n = seen.normal;
   float c = dot(n, v);
   if (c < 0.01) n = normalize(n + (0.01 - c) * v);
-  vec3 flat_n = n, warp = vWarp - dot(vWarp, n) * n;
-  if (dot(warp, warp) < 1e-8) warp = abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y);
-  warp = normalize(warp - dot(warp, n) * n);
+  vec3 flat_n = n, warp = normalize(seen.warp - dot(seen.warp, n) * n);
   vec3 weft = cross(n, warp);
-  Detail d = detailOf(m, n, plane, v, warp, weft, reach);
+  Detail d = detailOf(m, seen, n, v, warp, weft, reach);
   n = d.n;
   c = dot(n, v);
   if (c < 0.01) n = normalize(n + (0.01 - c) * v);
   warp = normalize(warp - dot(warp, n) * n);
   weft = cross(n, warp);
-  vec3 seen = vec3(dot(warp, v), dot(weft, v), dot(n, v));
-  Sight sight = sightOf(m, d.roughness, d.colour, couplingAt(uRow, d.roughness), seen);
+  vec3 towards = vec3(dot(warp, v), dot(weft, v), dot(n, v));
+  Sight sight = sightOf(m, d.roughness, d.colour, couplingAt(uRow, d.roughness), towards);
   vec3 specular, diffuse;
   albedoTowards(m, sight, specular, diffuse);
-  vec3 total = uSky * vOpen * (specular + diffuse);
+  vec3 total = uSky * seen.open * (specular + diffuse);
   for (int k = 0; k < uLights; ++k) {
-    vec3 l = uVector[k].xyz - uVector[k].w * vPosition;
+    vec3 l = uVector[k].xyz - uVector[k].w * seen.position;
     float squared = dot(l, l);
     l *= inversesqrt(squared);
     float angle = uVector[k].w > 0.0 ? uLightSize[k].x * inversesqrt(squared) : uLightSize[k].x;
@@ -266,55 +194,55 @@ void main() {
     if (uAhead[k].w > 0.0) strength *= uAhead[k].w > 1.5 ? abs(ahead) : max(0.0, ahead);
     // A little above the surface: the map's own grid must not shade it.
     float lift = uLightSize[k].y * (uVector[k].w > 0.0 ? sqrt(squared) : 1.0);
-    strength *= lit(k, vPosition + lift * (1.5 * plane + 0.5 * l));
+    strength *= lit(k, seen.position + lift * (1.5 * seen.plane + 0.5 * l));
     if (strength <= 0.0) continue;
     float wider = d.wider + 0.125 * angle * angle * uSpread * uSpread;
     total += brdf(m, sight, wider, vec3(dot(warp, l), dot(weft, l), min(NoL, 1.0))) * (NoL * strength) * uIntensity[k];
   }
-  oRadiance = vec4(total * d.left * uWhite, 1.0);
+  return vec4(total * d.left * uWhite, 1.0);
+}
+
+void main() {
+  // Of a tile that sees several materials, each adds its own pixels.
+  oRadiance = rowAt() == uRow + 1 ? shaded() : vec4(0.0);
 }
 `;
 
 // A map: colours by value, darker where the surface turns away, as in the pictures of maps.
-export const OVERLAY = `${INPUTS}
+export const OVERLAY = `${SEEN}
 uniform sampler2D uColours;
-uniform bool uCover;
+uniform int uFoam;
 out vec4 oRadiance;
 
 void main() {
-  vec3 v = normalize(uEye - vPosition);
-  float light = 0.62 + 0.38 * abs(dot(normalize(vNormal), v));
-  float code = vMap * 255.0;
+  int row = rowAt() - 1;
+  Seen seen = seenAt();
+  float light = 0.62 + 0.38 * abs(dot(seen.normal, normalize(uEye - seen.position)));
+  float code = seen.open * 255.0;
   vec3 root = texelFetch(uColours, ivec2(int(clamp((code - 1.0) / 254.0 * 255.0 + 0.5, 0.0, 255.0)), 0), 0).rgb;
-  vec3 colour = uCover && code >= 0.5 ? root * root : vec3(pow(205.0 / 255.0, 2.2));
-  oRadiance = vec4(light * colour, 1.0);
+  vec3 colour = row != uFoam && code >= 0.5 ? root * root : vec3(pow(205.0 / 255.0, 2.2));
+  oRadiance = row < 0 ? vec4(0.0) : vec4(light * colour, 1.0);
 }
 `;
 
-export const NOTHING = "void main() {}\n";
-
-// From the sum of some pictures to the display: exposure is in the radiance, then white point,
-// clamp, sRGB and the dither of pbr/light/exposure.py.
+// From the sum of some pictures to the display: what sees no seat sees the paper, exposure is in the
+// radiance, then white point, clamp, sRGB and the dither of pbr/light/exposure.py.
 export const DISPLAY = `
 uniform sampler2D uSum;
 uniform float uCount;
 uniform vec3 uNeutral;
+uniform vec3 uPaper;
 uniform vec2 uSize;
+uniform vec2 uDrawn;
 out vec4 oColour;
 
 void main() {
-  vec3 x = texture(uSum, gl_FragCoord.xy / uSize).rgb / uCount / uNeutral;
+  vec4 sum = texelFetch(uSum, ivec2(gl_FragCoord.xy * uDrawn / uSize), 0);
+  vec3 x = (sum.rgb + (uCount - sum.a) * uPaper) / uCount / uNeutral;
   x = clamp(x, 0.0, 1.0);
   vec3 code = mix(1.055 * pow(max(x, 1e-9), vec3(1.0 / 2.4)) - 0.055, 12.92 * x, vec3(lessThanEqual(x, vec3(0.0031308))));
   vec2 at = vec2(floor(gl_FragCoord.x), uSize.y - 1.0 - floor(gl_FragCoord.y));
   float noise = fract(52.9829189 * fract(dot(at, vec2(0.06711056, 0.00583715))));
   oColour = vec4(floor(clamp(255.0 * code + 0.002 + 0.996 * noise, 0.0, 255.0)) / 255.0, 1.0);
 }
-`;
-
-// Add a picture to the sum of those before.
-export const ADD = `
-uniform sampler2D uNew;
-out vec4 oSum;
-void main() { oSum = texelFetch(uNew, ivec2(gl_FragCoord.xy), 0); }
 `;

@@ -18,15 +18,17 @@ function across(l) {
 
 /**
  * A point of the unit disc; Roberts 2018 spreads numbers evenly, Shirley and Chiu 1997 map them.
+ * Two by two they lie opposite: however few, their mean is the middle, or the light would shift.
  * @param {number} index
  */
 export function discPoint(index) {
-  const a = 2 * ((0.5 + 0.7548776662466927 * index) % 1) - 1;
-  const b = 2 * ((0.5 + 0.5698402909980532 * index) % 1) - 1;
-  if (a === 0 && b === 0) return [0, 0];
+  // From the seventh on, also the first two pairs fill the disc as evenly as can be.
+  const pair = (index >> 1) + 7, side = index & 1 ? -1 : 1;
+  const a = 2 * ((0.5 + 0.7548776662466927 * pair) % 1) - 1;
+  const b = 2 * ((0.5 + 0.5698402909980532 * pair) % 1) - 1;
   const [r, phi] = Math.abs(a) > Math.abs(b)
     ? [a, Math.PI / 4 * b / a] : [b, Math.PI / 2 - Math.PI / 4 * a / b];
-  return [r * Math.cos(phi), r * Math.sin(phi)];
+  return [side * r * Math.cos(phi), side * r * Math.sin(phi)];
 }
 
 /**
@@ -64,7 +66,9 @@ export function lightsOf(rig, seat, point, texels) {
     const from = isWide(light, seat.middle) ? place : pointOf(light, seat.middle, [0, 0]);
     const [matrix, texel] = shadowMatrix(light, from, seat, texels);
     vector.set([...place, light.near ? 1 : 0], 4 * k);
-    intensity.set(light.colour.map((c) => c * light.intensity), 3 * k);
+    // All points of a bulb together light as its middle does.
+    const nearer = light.near && !light.sides ? norm(minus(place, seat.middle)) / norm(minus(light.vector, seat.middle)) : 1;
+    intensity.set(light.colour.map((c) => c * light.intensity * nearer ** 3), 3 * k);
     shadow.set(matrix, 16 * k);
     // Of a rectangle, points are drawn out of its sides: none of it is left to widen a lobe.
     const angle = light.sides ? 0 : light.near ? light.size : light.size / 2;

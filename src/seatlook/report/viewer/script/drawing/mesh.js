@@ -54,7 +54,7 @@ export class Mesh {
     this.attribute(2, this.pattern, 2, false);
     this.attribute(3, array("seam"), 2, false);
     this.attribute(4, warpOf(this.x, this.pattern, this.faces), 3, true);
-    this.attribute(5, array("open"), 1, true);
+    this.open = this.attribute(5, array("open"), 1, true);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.faces, gl.STATIC_DRAW);
     this.indexType = this.faces instanceof Uint16Array ? gl.UNSIGNED_SHORT : gl.UNSIGNED_INT;
@@ -91,31 +91,29 @@ export class Mesh {
    * @param {Numbers} values
    * @param {number} columns
    * @param {boolean} share whether whole numbers stand for -1 or 0 to 1
+   * @returns {WebGLBuffer}
    */
   attribute(place, values, columns, share) {
     const gl = this.gl;
     const type = { Int8Array: gl.BYTE, Uint8Array: gl.UNSIGNED_BYTE, Int16Array: gl.SHORT,
       Uint16Array: gl.UNSIGNED_SHORT }[values.constructor.name];
-    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+    const buffer = /** @type {WebGLBuffer} */ (gl.createBuffer());
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
     gl.enableVertexAttribArray(place);
     gl.vertexAttribPointer(place, columns, type ?? gl.FLOAT, share, 0, 0);
+    return buffer;
   }
 
   /**
-   * Let shaders read a map, or none.
+   * Let shaders read a map in the place of the open share, or that again.
    * @param {number} layer its number, below 0 for none
    */
   lay(layer) {
     const gl = this.gl;
     gl.bindVertexArray(this.array);
-    if (layer < 0) {
-      gl.disableVertexAttribArray(6);
-    } else {
-      gl.bindBuffer(gl.ARRAY_BUFFER, this.layers[layer]);
-      gl.enableVertexAttribArray(6);
-      gl.vertexAttribPointer(6, 1, gl.UNSIGNED_BYTE, true, 0, 0);
-    }
+    gl.bindBuffer(gl.ARRAY_BUFFER, layer < 0 ? this.open : this.layers[layer]);
+    gl.vertexAttribPointer(5, 1, gl.UNSIGNED_BYTE, true, 0, 0);
     gl.bindVertexArray(null);
   }
 

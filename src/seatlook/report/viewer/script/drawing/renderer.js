@@ -1,11 +1,13 @@
 // Pictures of the seat: one coarse sample while something moves, then several fine ones, summed.
 
-import { ADD, DEPTH, DISPLAY, MOST_LIGHTS, NOTHING, OVERLAY, SHADE, VERTEX } from "./glsl_surface.js";
+import { DISPLAY, MOST_LIGHTS, OVERLAY, SHADE } from "./glsl_surface.js";
 import { termsOf } from "./glsl_brdf.js";
-import { WHOLE, bind, fill, newTexture, programOf, sampling, set, targetOf, use } from "./gl.js";
+import { WHOLE, bind, fill, newTexture, programOf, sampling, set, use } from "./gl.js";
 import { discPoint, isWide, lightsOf } from "./lights.js";
 import { MaterialTable, detailOf, needsOf, reliefsOf, tablesOf } from "./materials.js";
 import { Mesh } from "./mesh.js";
+import { Seen } from "./seen.js";
+import { TILES, Tiles } from "./tiles.js";
 
 /** @typedef {import("./payload.js").Content} Content */
 /** @typedef {import("./payload.js").Numbers} Numbers */
@@ -19,7 +21,7 @@ const CARD = 0.18;
 const PAPER = Math.pow(97 / 255, 2.2);
 // A picture at rest may take so long [ms], one while something moves so long.
 const REST = 1100, MOVE = 120;
-const SAMPLES = [4, 8, 16];
+const SAMPLES = [4, 8, 16, 32, 64];
 const SCALES = [1, 1.5, 2, 3, 4];
 
 export class Renderer {
@@ -38,16 +40,15 @@ export class Renderer {
     this.table = new MaterialTable(gl, tablesOf(gl, array, content.stretched));
     this.reliefs = reliefsOf(gl, content, array);
     this.programs = {
-      overlay: programOf(gl, VERTEX, OVERLAY),
-      depth: programOf(gl, DEPTH, NOTHING), display: programOf(gl, WHOLE, DISPLAY), add: programOf(gl, WHOLE, ADD),
+      overlay: programOf(gl, WHOLE, OVERLAY), display: programOf(gl, WHOLE, DISPLAY),
     };
     /** @type {Map<string, import("./gl.js").Program>} */
     this.shaders = new Map();
     this.colours = ["viridis", "diverging"].map((name) => this.colourTable(array(name)));
     this.blank = this.colourTable(Uint8Array.of(255, 255, 255));
     this.shadows = this.shadowMaps();
-    /** @type {Record<string, ReturnType<typeof targetOf>>} */
-    this.targets = {};
+    this.seen = new Seen(gl);
+    this.tiles = new Tiles(gl);
     this.shadowKey = "";
     this.cost = 4e-4;  // ms per pixel and sample, measured as it goes; begun with that of software
     this.count = 4;
@@ -88,15 +89,6 @@ export class Renderer {
     return { texture, frames };
   }
 
-  /** @param {string} name @param {number} width @param {number} height @param {boolean} depth */
-  target(name, width, height, depth) {
-    const old = this.targets[name];
-    if (old && old.width === width && old.height === height) return old;
-    old?.drop();
-    this.targets[name] = targetOf(this.gl, width, height, this.gl.RGBA16F, depth);
-    return this.targets[name];
-  }
-
   /** Begin a picture anew. */
   restart() {
     this.done = 0;
@@ -127,8 +119,10 @@ export class Renderer {
     const scale = SCALES.find((s) => this.cost * width * height / (s * s) <= MOVE) ?? SCALES[SCALES.length - 1];
     const size = [Math.max(1, Math.round(width / scale)), Math.max(1, Math.round(height / scale))];
     const start = performance.now();
-    this.sample(shown, size, 0, 1, scale === 1 ? "one" : "coarse");
-    this.display(this.targets[scale === 1 ? "one" : "coarse"].texture, 1, shown);
+    this.seen.fit(width, height);
+    this.seen.clear();
+    this.sample(shown, size, 0, 1);
+    this.display(size, 1, shown);
     this.wait();
     this.learn(performance.now() - start, size);
     this.restart();
@@ -141,29 +135,20 @@ export class Renderer {
    * @param {number} most samples, where their number does not go by time
    */
   rest(shown, most = 0) {
-    const { gl } = this;
     const { width, height } = this.canvas;
     if (this.done === 0) {
       const within = SAMPLES.filter((n) => n * this.cost * width * height <= REST);
       this.count = most || (within[within.length - 1] ?? SAMPLES[0]);
     }
     if (this.done >= this.count) return false;
-    const start = performance.now();
-    this.sample(shown, [width, height], this.done, this.count, "one");
-    const sum = this.target("sum", width, height, false);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, sum.frame);
-    gl.viewport(0, 0, width, height);
-    if (this.done === 0) gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.ONE, gl.ONE);
-    use(gl, this.programs.add, {});
-    bind(gl, this.programs.add, { uNew: this.targets.one.texture });
-    fill(gl);
-    gl.disable(gl.BLEND);
+    const start = performance.now(), size = [width, height];
+    this.seen.fit(width, height);
+    if (this.done === 0) this.seen.clear();
+    this.sample(shown, size, this.done, this.count);
     this.done += 1;
-    this.display(sum.texture, this.done, shown);
+    this.display(size, this.done, shown);
     this.wait();
-    this.learn(performance.now() - start, [width, height]);
+    this.learn(performance.now() - start, size);
     return this.done < this.count;
   }
 
@@ -178,36 +163,41 @@ export class Renderer {
   }
 
   /**
-   * Draw one sample of all pixels into a target.
+   * Add one sample of all pixels to the sum.
    * @param {Shown} shown
    * @param {number[]} size
    * @param {number} index of the sample
    * @param {number} count of all samples
-   * @param {string} into
    */
-  sample(shown, size, index, count, into) {
-    const { gl, mesh } = this;
-    const spot = count > 1 ? discPoint(index) : [0, 0];
-    const { uniforms, shadow } = lightsOf(shown.rig, mesh, spot, SHADOW);
+  sample(shown, size, index, count) {
+    const { gl, mesh, seen } = this;
+    const { uniforms, shadow } = lightsOf(shown.rig, mesh, count > 1 ? discPoint(index) : [0, 0], SHADOW);
     if (shown.layer < 0) this.drawShadows(shown, shadow, index, count);
-    const target = this.target(into, size[0], size[1], true);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
-    gl.viewport(0, 0, size[0], size[1]);
-    const white = 1 / (1.2 * Math.pow(2, shown.ev100));
-    const card = CARD * 2.5 / 1.2 / Math.PI;
-    const paper = shown.layer < 0 ? shown.rig.white.map((c) => c * card) : [PAPER, PAPER, PAPER];
-    gl.clearBufferfv(gl.COLOR, 0, [...paper, 1]);
-    gl.clearBufferfv(gl.DEPTH, 0, [1]);
     const shift = jitter(index, count).map((s, i) => 2 * s / size[i]);
     const view = {
-      uCamera: shown.camera.matrix(size[0] / size[1], mesh.reach, mesh.middle, shift),
-      uEye: shown.camera.position, ...mesh.ranges,
+      ...shown.camera.uniforms(size[0] / size[1], mesh.reach, mesh.middle, shift), ...mesh.ranges, uDrawn: size,
     };
     // The wrong side of the cover shows from below or through a gap: it can wait until all is still.
     if (count === 1 && shown.camera.state.elevation > 0) gl.enable(gl.CULL_FACE);
-    if (shown.layer >= 0) this.drawMap(shown, view);
-    else this.drawParts(shown, { ...view, ...uniforms }, size, count, white);
+    seen.look(size, view, () => this.drawSeat(shown));
     gl.disable(gl.CULL_FACE);
+    // Of further samples, pixels are shifted by less than tiles reach over.
+    if (shown.layer < 0 && index === 0) this.tiles.read(seen.what, size, shown.materials.length);
+    seen.add(size, () => {
+      if (shown.layer >= 0) this.drawMap(shown, view);
+      else this.drawLooks(shown, { ...view, ...uniforms }, count);
+    });
+  }
+
+  /** @param {Shown} shown */
+  drawSeat(shown) {
+    const { gl, mesh, content, seen } = this;
+    if (shown.layer >= 0) mesh.lay(shown.layer);
+    content.parts.forEach((part, k) => {
+      set(gl, seen.see, { uRow: shown.look[k] });
+      mesh.draw(part.first, shown.layer < 0 ? part.count : part.refined || part.count);
+    });
+    if (shown.layer >= 0) mesh.lay(-1);
   }
 
   /** @param {Shown} shown @param {Float32Array} matrices @param {number} index @param {number} count */
@@ -220,11 +210,11 @@ export class Renderer {
     gl.viewport(0, 0, SHADOW, SHADOW);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1.5, 2);
-    use(gl, this.programs.depth, mesh.ranges);
+    use(gl, this.seen.depth, mesh.ranges);
     for (let k = 0; k < shown.rig.lights.length; ++k) {
       gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadows.frames[k]);
       gl.clearBufferfv(gl.DEPTH, 0, [1]);
-      set(gl, this.programs.depth, { uCamera: matrices.subarray(16 * k, 16 * k + 16) });
+      set(gl, this.seen.depth, { uCamera: matrices.subarray(16 * k, 16 * k + 16) });
       this.drawCover();
     }
     gl.disable(gl.POLYGON_OFFSET_FILL);
@@ -237,37 +227,39 @@ export class Renderer {
   }
 
   /**
+   * Shade the pixels of each material.
    * @param {Shown} shown
    * @param {Record<string, import("./gl.js").Value>} view
-   * @param {number[]} size
    * @param {number} count
-   * @param {number} white
    */
-  drawParts(shown, view, size, count, white) {
-    const { gl, mesh, content } = this;
+  drawLooks(shown, view, count) {
+    const { gl, content } = this;
     const { thread } = content;
+    const size = /** @type {number[]} */ (view.uDrawn);
     const pixel = 2 * shown.camera.half(size[0] / size[1]) / size[1];
     const common = {
-      ...view, uWhite: white, uSpread: 1 / Math.sqrt(count), uPixel: pixel / Math.sqrt(count),
+      ...view, uWhite: 1 / (1.2 * Math.pow(2, shown.ev100)), uSpread: 1 / Math.sqrt(count), uPixel: pixel / Math.sqrt(count),
       uSky: shown.rig.sky, uThread: [thread.offset, thread.pitch, thread.length, thread.width],
       uThreadColour: [...thread.colour, thread.own],
     };
-    const prepared = new Set();
-    content.parts.forEach((part, k) => {
-      const row = shown.look[k], last = k === content.parts.length - 1;
-      const detail = detailOf(shown.materials[row], content, this.reliefs);
-      const photo = last ? null : shown.photo;
-      const shade = this.shader(needsOf(shown.materials[row], photo !== null));
-      use(gl, shade, prepared.has(shade) ? {} : common);
-      prepared.add(shade);
-      set(gl, shade, {
-        ...detail.uniforms, uRow: row, uPhotoSize: photo ? [...photo.size, ...photo.pixels] : [0, 0, 0, 0],
-      });
-      const slopes = detail.texture ?? this.blank;
-      bind(gl, shade, {
-        ...this.table.textures, uShadows: this.shadows.texture, uSlopes: slopes, uPhoto: photo?.texture ?? this.blank,
-      });
-      mesh.draw(part.first, part.count);
+    const prepared = new Set(), foam = shown.look[content.parts.length - 1];
+    shown.materials.forEach((material, row) => {
+      const detail = detailOf(material, content, this.reliefs);
+      const photo = row === foam ? null : shown.photo;
+      for (const sewn of [false, true]) {
+        if (!this.tiles.has(row, sewn)) continue;
+        const shade = this.shader({ ...needsOf(material, photo !== null), sewn });
+        use(gl, shade, prepared.has(shade) ? {} : common);
+        prepared.add(shade);
+        set(gl, shade, {
+          ...detail.uniforms, uRow: row, uPhotoSize: photo ? [...photo.size, ...photo.pixels] : [0, 0, 0, 0],
+        });
+        bind(gl, shade, {
+          ...this.table.textures, uShadows: this.shadows.texture, uSlopes: detail.texture ?? this.blank,
+          uPhoto: photo?.texture ?? this.blank, ...this.seen.what,
+        });
+        this.tiles.draw(row, sewn);
+      }
     });
   }
 
@@ -277,35 +269,38 @@ export class Renderer {
    */
   shader(needs) {
     const key = termsOf(needs);
-    const found = this.shaders.get(key) ?? programOf(this.gl, VERTEX, key + SHADE);
+    const found = this.shaders.get(key) ?? programOf(this.gl, TILES, key + SHADE);
     this.shaders.set(key, found);
     return found;
   }
 
   /** @param {Shown} shown @param {Record<string, import("./gl.js").Value>} view */
   drawMap(shown, view) {
-    const { gl, mesh, content } = this;
+    const { gl, content } = this;
     const { overlay } = this.programs;
-    mesh.lay(shown.layer);
-    use(gl, overlay, view);
-    bind(gl, overlay, { uColours: this.colours[content.maps[shown.layer].low < 0 ? 1 : 0] });
-    content.parts.forEach((part, k) => {
-      set(gl, overlay, { uCover: k < content.parts.length - 1 });
-      mesh.draw(part.first, part.refined || part.count);
-    });
-    mesh.lay(-1);
+    use(gl, overlay, { ...view, uFoam: shown.look[content.parts.length - 1] });
+    bind(gl, overlay, { uColours: this.colours[content.maps[shown.layer].low < 0 ? 1 : 0], ...this.seen.what });
+    fill(gl);
   }
 
-  /** @param {WebGLTexture} texture @param {number} count @param {Shown} shown */
-  display(texture, count, shown) {
+  /** Radiance over white beside the seat. @param {Shown} shown */
+  paper(shown) {
+    if (shown.layer >= 0) return [PAPER, PAPER, PAPER];
+    const card = CARD * 2.5 / 1.2 / Math.PI;
+    return shown.rig.white.map((c) => c * card);
+  }
+
+  /** @param {number[]} size as much of the sum as is drawn @param {number} count @param {Shown} shown */
+  display(size, count, shown) {
     const { gl } = this;
     const { width, height } = this.canvas;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, width, height);
     use(gl, this.programs.display, {
-      uCount: count, uNeutral: shown.layer < 0 ? shown.rig.white : [1, 1, 1], uSize: [width, height],
+      uCount: count, uNeutral: shown.layer < 0 ? shown.rig.white : [1, 1, 1], uSize: [width, height], uDrawn: size,
+      uPaper: this.paper(shown),
     });
-    bind(gl, this.programs.display, { uSum: texture });
+    bind(gl, this.programs.display, { uSum: this.seen.shaded });
     fill(gl);
   }
 }
