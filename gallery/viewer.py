@@ -1,6 +1,6 @@
 """Pictures of the viewer against the renderer's `high`, its frames per second, its weight.
 
-Run it with: python gallery/viewer.py RESULT.npz SCENE.toml [WIDTH HEIGHT]
+Run it with: python gallery/viewer.py RESULT.npz SCENE.toml [WIDTH HEIGHT [SAMPLES]]
 
 Protocol of the renderer's chart: pixels of the object, exposure such that the reference's median is
 18 % display grey, 67 pixels per degree for FLIP. Surroundings are off. Rows are printed as a table.
@@ -15,6 +15,7 @@ import os
 import shutil
 import sys
 import tempfile
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -65,10 +66,12 @@ def rigs() -> tuple[Rig, ...]:
     )
 
 
-def picture(page: Any, look: int, rig: int, size: tuple[int, int]) -> np.ndarray:
+def picture(
+    page: Any, look: int, rig: int, size: tuple[int, int], samples: int = SAMPLES
+) -> np.ndarray:
     """Radiance (h, w, 3) of the viewer."""
     ask = "([look, rig, samples]) => window.probed.then((p) => p.picture(look, rig, samples))"
-    text = page.evaluate(ask, [look, rig, SAMPLES])
+    text = page.evaluate(ask, [look, rig, samples])
     values = np.frombuffer(base64.b64decode(text), np.float32)
     return values.reshape(size[1], size[0], 3)[::-1]
 
@@ -107,15 +110,26 @@ def speed(page: Any) -> None:
         taken = page.evaluate(ask, scale) / 10
         spent = (cpu_seconds() - before) / 10
         print(f"frame at 1/{scale}: {taken:.0f} ms, {1e3 * spent:.0f} ms of CPU")
-    before = cpu_seconds()
-    taken = page.evaluate("() => window.probed.then((p) => p.still(4))")
-    print(f"rest, 4 samples: {taken:.0f} ms, {1e3 * (cpu_seconds() - before):.0f} ms of CPU")
+
+
+def rest(page: Any, rigs: Sequence[Rig], names: Sequence[str]) -> None:
+    """Print the CPU time of a picture at rest of 4 samples at 1280 x 720, under each light."""
+    ask = "([look, rig]) => window.probed.then((p) => { p.choose(look, rig); return p.still(4); })"
+    print("light | material | CPU s at rest")
+    for k, rig in enumerate(rigs):
+        for i, name in enumerate(names):
+            if rig.ambient:
+                page.evaluate(ask, [i, k])  # compiles
+                before = cpu_seconds()
+                page.evaluate(ask, [i, k])
+                print(f"{rig.name} | {name} | {cpu_seconds() - before:.2f}")
 
 
 def main() -> None:
     """Print the tables."""
     result, scene_file, *size = sys.argv[1:]
-    width, height = map(int, size) if size else (640, 360)
+    width, height = map(int, size[:2]) if size else (640, 360)
+    samples = int(size[2]) if len(size) > 2 else SAMPLES
     scene = io.load_scene(Path(scene_file))
     scene = replace(scene, rigs=rigs(), textures=MappingProxyType(looks()))
     case = Case(scene, solution=io.read_result(result))
@@ -133,6 +147,7 @@ def main() -> None:
         spent = 1e3 * (cpu_seconds() - before)
         print(f"first frame: {said[0]:.0f} ms, {spent:.0f} ms of CPU; {said[1]:.0f} triangles")
         speed(page)
+        rest(page, scene.rigs, list(scene.textures))
         page.evaluate(f"() => window.probed.then((p) => p.resize({width}, {height}))")
         print("light | material | FLIP | block error | shadow state")
         for k, rig in enumerate(scene.rigs):
@@ -140,7 +155,7 @@ def main() -> None:
                 # In direct light nothing comes from the seat itself.
                 level = TIERS["T4"] if rig.ambient else replace(TIERS["T4"], bounces=0)
                 image = case.render(look, rig=rig, camera=camera, quality=level)
-                got = picture(page, i, k, camera.size)
+                got = picture(page, i, k, camera.size, samples)
                 covered = np.asarray(image.cover)
                 found = compare(image.radiance, got, rig=rig, cover=covered)
                 state = ""

@@ -45,6 +45,10 @@ async function start() {
     return text;
   };
 
+  const choose = (look, rig) => {
+    Object.assign(scene, { lookNumber: look, rigNumber: rig });
+    renderer.refill(shown());
+  };
   const resize = (width, height) => {
     [canvas.width, canvas.height] = [width, height];
   };
@@ -71,7 +75,7 @@ async function start() {
     return performance.now() - before;
   };
   const { faces } = renderer.mesh;
-  return { opened, picture, resize, frames, still, triangles: faces.length / 3 };
+  return { opened, picture, choose, resize, frames, still, triangles: faces.length / 3 };
 }
 
 window.probed = start();
