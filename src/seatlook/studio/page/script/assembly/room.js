@@ -112,9 +112,9 @@ export class AssemblyRoom {
   look({ azimuth, elevation }) {
     const { middle, reach } = this.whole;
     Object.assign(this.camera.state, {
-      target: [...middle], azimuth, elevation, distance: reach / Math.tan(FOV * Math.PI / 360),
+      target: [...middle], azimuth, elevation, distance: 0.8 * reach / Math.tan(FOV * Math.PI / 360),
     });
-    this.camera.farthest = 4 * this.camera.state.distance;
+    this.camera.farthest = 5 * this.camera.state.distance;
     this.redraw();
   }
 

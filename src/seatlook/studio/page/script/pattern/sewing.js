@@ -11,6 +11,7 @@ export const STEPS = [
   "Pick the direction in which the partner runs.",
 ];
 
+const FIT = 0.1;  // share by which two sides may differ, as everywhere
 const NEAR = 2;  // mm: two picks at one place are none
 
 export class Sewing {
@@ -97,8 +98,23 @@ export class Sewing {
     return ways.length ? { panel: start.panel, from: start.arc, way: sign * ways[0] } : null;
   }
 
+  /** How badly the partner fits the first line. @param {Pick | null} cursor */
+  misfit(cursor) {
+    const first = this.first(null), second = this.second(cursor);
+    return first && second ? Math.abs(Math.abs(second.way) / Math.abs(first.way) - 1) : Infinity;
+  }
+
+  /** Where no partner fits the shorter way round the first panel, the longer one is meant. @param {Pick | null} cursor */
+  fitWay(cursor) {
+    const now = this.misfit(cursor);
+    if (now <= FIT) return;
+    this.around = !this.around;
+    if (this.misfit(cursor) > FIT) this.around = !this.around;
+  }
+
   /** What the server is asked. */
   question() {
+    this.fitWay(null);
     const [a, b, c, d] = this.picks;
     const place = (/** @type {Pick} */ pick) => this.ring(pick.panel).at(pick.arc);
     return {
