@@ -54,8 +54,8 @@ def opened(browser: Any, address: str, **window: Any) -> Iterator[Any]:
     messages: list[str] = []
     home = "/".join(address.split("/")[:3])
     # Chromium says that waiting for a picture is slow; it is meant to wait.
-    page.on("console", lambda m: None if _idle(m.text) else messages.append(m.text))
-    page.on("pageerror", lambda e: None if "Not Found" in str(e) else messages.append(str(e)))
+    page.on("console", lambda m: None if "GPU stall" in m.text else messages.append(m.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
     page.on("request", lambda r: _outside(r.url, home, messages))
     page.goto(address)
     page.locator("[role=tab][aria-selected=true]").wait_for()
@@ -64,10 +64,6 @@ def opened(browser: Any, address: str, **window: Any) -> Iterator[Any]:
     finally:
         context.close()
     assert messages == []
-
-
-def _idle(text: str) -> bool:
-    return "GPU stall" in text or "404" in text
 
 
 def _outside(url: str, home: str, messages: list[str]) -> None:
@@ -135,7 +131,7 @@ def on_screen(page: Any, panel: str, place: Any) -> tuple[float, float]:
 
 def settled(page: Any) -> None:
     """Wait until all that was asked for is answered."""
-    page.wait_for_function("() => document.body.dataset.busy === 'no'")
+    page.wait_for_function("() => document.body.dataset.busy === 'no'", timeout=240_000)
 
 
 def corner_on_screen(page: Any, panel: str, place_mm: Any) -> tuple[float, float]:
