@@ -310,3 +310,20 @@ def test_a_run_is_cancelled_and_gone_on_with(home):
         assert run["status"] in ("interrupted", "cancelled")
         assert page.post("/api/run", {"resume": name, "score": False}).status == 200
         assert ended(page)["status"] == "done"
+
+
+@pytest.mark.render
+def test_variants_are_compared_by_the_command(home):
+    text = (home / "scene.toml").read_text()
+    (home / "other.toml").write_text(text.replace('material = "pvc"', 'material = "suede"'))
+    with studio(home) as (door, page):
+        for wrong in ({"command": "rm"}, {"others": ["../x.toml"]}, {"others": [3]}):
+            assert page.post("/api/run", {"command": "compare", **wrong}).status == 422
+        answer = page.post("/api/run", {"command": "compare", "others": ["other.toml"]})
+        assert answer.status == 200, answer.content
+        run = ended(page)
+        assert run["status"] == "done", run
+        assert run["command"] == "compare"
+        page_of = Client(door.port).get(run["page_url"].replace(" ", "%20"))
+        assert b"suede" in page_of.content
+        assert page.post("/api/run", {"resume": run["name"]}).status == 422

@@ -64,6 +64,10 @@ class Work:
         folder = self.session.folder
         if folder.scene is None:
             raise InputError.single("run", got="no scene", expected="a folder with one")
+        others = asked.get("others", [])
+        for other in others if isinstance(others, list) else [others]:
+            if not isinstance(other, str) or not folder.inside(other).is_file():
+                raise InputError.single("others", got=repr(other), expected="a scene of the folder")
         return self.runs.start(folder.root / folder.scene, asked)
 
     def warm(self, asked: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -96,10 +100,12 @@ class Work:
         where = self.session.folder.root / RUNS / values["name"]
         base = f"{self._door.results_path}/{RUNS}/{values['name']}"
         there = (where / "index.html").is_file()
+        left = sorted(path.name for path in where.glob("*") if path.is_file())
         images = sorted(path.name for path in (where / "images").glob("*.png"))
         return {
             **values,
             "page_url": f"{base}/index.html" if there else None,
+            "files": [f"{base}/{name}" for name in left],
             "images": [f"{base}/images/{name}" for name in images],
             "snapshots": sorted(path.stem for path in (where / "stages").glob("*.npz")),
         }

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -30,7 +31,7 @@ def main() -> int:
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
     os.dup2(2, 1)
     try:
-        code = _run(asked, answers)
+        code = (_run if asked["command"] == "evaluate" else _command)(asked, answers)
     except SeatlookError as error:
         problems = [str(one) for one in getattr(error, "problems", ())] or [str(error)]
         _say(answers, "failed", errors=problems)
@@ -67,6 +68,38 @@ def _run(asked: dict[str, Any], answers: TextIO) -> int:
     found = seat.resolution
     _say(answers, "done", status=found.status, reason=found.reason, missed=list(outcome.missed))
     return 0
+
+
+def _command(asked: dict[str, Any], answers: TextIO) -> int:
+    """Run another command as it is; its last line on stderr says where it is."""
+    out = Path(asked["out"])
+    out.parent.mkdir(parents=True, exist_ok=True)
+    words = [sys.executable, "-m", "seatlook", asked["command"], asked["scene"], *asked["others"]]
+    begun = time.monotonic()
+    _say(answers, "progress", at=asked["command"], figures={})
+    with (
+        out.with_suffix(".log").open("w", encoding="utf-8") as log,
+        subprocess.Popen(
+            [*words, "--out", str(out)],
+            stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.PIPE, text=True,
+        ) as process,
+    ):  # fmt: skip
+        said: list[str] = []
+        try:
+            for line in process.stderr or ():
+                said.append(line.strip())
+                seconds = round(time.monotonic() - begun)
+                _say(answers, "progress", at=said[-1], figures={"seconds": seconds})
+            code = process.wait()
+        except BaseException:
+            process.send_signal(signal.SIGTERM)
+            process.wait()
+            raise
+    if code in (0, 1, 3):
+        _say(answers, "done", status="", reason="; ".join(said[-2:]), missed=[])
+    else:
+        _say(answers, "failed", errors=said[-5:] or [f"ended with {code}"])
+    return code
 
 
 def _say(answers: TextIO, what: str, **values: Any) -> None:

@@ -17,6 +17,7 @@ from typing import Any
 from seatlook.errors import InputError
 from seatlook.files import write_text
 
+COMMANDS = ("evaluate", "improve", "compare")
 RUNS = "runs"  # folder of the runs, in that of the seat
 _PATIENCE = 10.0  # s that a cancelled run has to tidy up
 _LAST = ("done", "failed", "cancelled", "interrupted")
@@ -29,6 +30,7 @@ class Run:
     Parameters
     ----------
     name : of its folder in ``runs``
+    command : out of ``COMMANDS``
     status : "running", or how it ended; "interrupted": the server ended first
     fraction : float [1] of what it is at, None where nobody knows
     seconds_left : float [s] of that
@@ -36,6 +38,7 @@ class Run:
     """
 
     name: str
+    command: str = "evaluate"
     status: str = "running"
     stage: str = ""
     fraction: float | None = None
@@ -74,7 +77,8 @@ class Runs:
 
         Parameters
         ----------
-        asked : ``resume`` names a run to go on with; ``score`` whether visibility is scored;
+        asked : ``command``; ``others``: more scenes, to compare with; ``resume`` names a run
+            to go on with; ``score`` whether visibility is scored;
             ``changes`` are values over those of the scene
 
         Raises
@@ -93,7 +97,7 @@ class Runs:
                     "resume", got=repr(resumed), expected="a run of this folder"
                 )
             name = str(resumed) if resumed is not None else self._new_name()
-            run = self._runs[name] = Run(name)
+            run = self._runs[name] = Run(name, self._command(asked, self._runs.get(name)))
             self._process = self._begin(scene, name, asked, resume=resumed is not None)
             threading.Thread(target=self._follow, args=(self._process, run), daemon=True).start()
             self._write()
@@ -111,6 +115,20 @@ class Runs:
                 process.wait(_PATIENCE)
                 return
             process.kill()
+
+    @staticmethod
+    def _command(asked: Mapping[str, Any], before: Run | None) -> str:
+        command = asked.get("command", "evaluate" if before is None else before.command)
+        if command not in COMMANDS:
+            raise InputError.single(
+                "command", got=repr(command), expected=f"one of {', '.join(COMMANDS)}"
+            )
+        if before is not None and before.command != "evaluate":
+            raise InputError.single(
+                "resume", got=f"a run of {before.command}", expected="one of evaluate",
+                hint="begin it again",
+            )  # fmt: skip
+        return str(command)
 
     def _new_name(self) -> str:
         stamp = time.strftime("%Y-%m-%d %H-%M-%S")
@@ -130,6 +148,8 @@ class Runs:
         words = {
             "scene": str(scene),
             "out": str(self._root / RUNS / name),
+            "command": self._runs[name].command,
+            "others": [str(self._root / other) for other in asked.get("others", [])],
             "resume": resume,
             "score": bool(asked.get("score", True)),
             "changes": [str(one) for one in asked.get("changes", [])],
