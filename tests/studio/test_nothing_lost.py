@@ -9,11 +9,14 @@ import tomllib
 from http.client import HTTPException
 
 import pytest
+from filelock import FileLock
 
+from seatlook.errors import InputError
 from seatlook.io.scene.read import load_scene
 from seatlook.studio.folder import Folder
 from seatlook.studio.keeping.durable import prepared
 from seatlook.studio.keeping.journal import Change, Journal
+from seatlook.studio.server import serve
 from seatlook.studio.session import Session
 from support.scene_files import write_two_panels
 from support.studio import studio, studio_process
@@ -140,6 +143,22 @@ def test_a_folder_that_cannot_be_read_is_shown_with_what_is_wrong(home):
         state = page.state
         assert len(state["pattern"]["panels"]) == 2
         assert "wire" in state["errors"][0]["key"]
+
+
+def test_values_that_json_has_nothing_for_are_sent_as_text(home):
+    scene = home / "scene.toml"
+    scene.write_text(scene.read_text().replace("ev100 = 5.0", "ev100 = nan\nday = 2026-12-01"))
+    with studio(home) as (_, page):
+        state = page.state
+    assert state["rigs"][1]["ev100"] == "nan"
+    assert state["rigs"][1]["day"] == "2026-12-01"
+    assert len(state["errors"]) == 2
+
+
+def test_a_folder_is_open_in_one_studio_only(home):
+    (home / ".seatlook").mkdir()
+    with FileLock(home / ".seatlook" / "lock"), pytest.raises(InputError, match="another studio"):
+        serve(home, started=lambda _: pytest.fail("it began"))
 
 
 def test_a_change_that_did_not_reach_its_files_is_finished(home):

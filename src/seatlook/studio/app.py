@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
@@ -200,9 +201,27 @@ async def posted(request: Request) -> dict[str, Any]:
 
 
 def answer(values: Mapping[str, Any], status: int = 200) -> Response:
-    """Plain values as JSON; what is not finite is no value."""
-    text = json.dumps(values, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    """Plain values as JSON; what JSON has nothing for is sent as text."""
+    try:
+        text = _json(values)
+    except (TypeError, ValueError):
+        text = _json(_sendable(values))
     return Response(text, status_code=status, media_type="application/json")
+
+
+def _json(values: Any) -> str:
+    return json.dumps(values, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+
+
+def _sendable(value: Any) -> Any:
+    """Put texts in the place of what TOML has and JSON not: dates, inf and nan."""
+    if isinstance(value, Mapping):
+        return {str(key): _sendable(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_sendable(one) for one in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value if isinstance(value, str | int | float | None) else str(value)
 
 
 def _answering(handler: Handler) -> Handler:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import uvicorn
+from filelock import FileLock, Timeout
 
 from seatlook.errors import InputError
 from seatlook.studio.app import make_app
-from seatlook.studio.folder import Folder
+from seatlook.studio.folder import OWN, Folder
 from seatlook.studio.guard import Door
 from seatlook.studio.session import Session
 
@@ -29,14 +31,15 @@ def serve(folder: Path, *, port: int = 0, started: Callable[[str], None] = print
     Raises
     ------
     InputError
-        The port is taken, or the folder is a file.
+        The port is taken, the folder is a file, or another studio has it open.
     """
     if folder.exists() and not folder.is_dir():
         raise InputError.single("FOLDER", got=str(folder), expected="a folder")
-    with listen(port) as listening:
+    own = Folder(folder)
+    with _alone(own), listen(port) as listening:
         door = Door(listening.getsockname()[1])
         config = uvicorn.Config(
-            make_app(Session(Folder(folder)), door),
+            make_app(Session(own), door),
             log_level="warning",
             access_log=False,
             server_header=False,
@@ -45,6 +48,25 @@ def serve(folder: Path, *, port: int = 0, started: Callable[[str], None] = print
         )
         started(door.address)
         uvicorn.Server(config).run(sockets=[listening])
+
+
+@contextmanager
+def _alone(folder: Folder) -> Iterator[None]:
+    """Keep other studios off a folder: each would not know what the other one changes."""
+    own = folder.inside(OWN)
+    own.mkdir(parents=True, exist_ok=True)
+    lock = FileLock(own / "lock")
+    try:
+        lock.acquire(timeout=0)
+    except Timeout as error:
+        raise InputError.single(
+            "FOLDER", got="one that another studio has open", expected="a folder of its own",
+            hint="go on in that studio, or end it",
+        ) from error  # fmt: skip
+    try:
+        yield
+    finally:
+        lock.release()
 
 
 def listen(port: int) -> socket.socket:

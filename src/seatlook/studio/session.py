@@ -18,6 +18,7 @@ from seatlook.studio.keeping.merge import changed, merged, touching
 from seatlook.studio.reading import Reading, read
 from seatlook.studio.state import state_values
 
+_UNDONE = 100  # edits that can be taken back
 _REMEMBERED = 64  # states that a tab may still look at
 
 
@@ -98,6 +99,7 @@ class Session:
             if change.after:
                 self._write(change)
                 self._undo.append(change)
+                del self._undo[:-_UNDONE]
                 self._redo.clear()
             return self._now(draft.reading)
 

@@ -12,6 +12,7 @@ import json
 import os
 import zlib
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -64,12 +65,15 @@ class Journal:
         """
         self._write(json.dumps(_row(change)))
         self.changes.append(change)
+        del self.changes[:-_KEPT]
         self.done = False
 
     def finish(self) -> None:
         """Note that the last change reached its files."""
         self.done = True
-        self._write("{}")
+        # On a disk that is full by now it is only read once more at the next start.
+        with suppress(OSError):
+            self._write("{}")
 
     def withdraw(self) -> None:
         """Take back the last change, which did not reach its files."""
