@@ -104,14 +104,15 @@ def test_scatter_is_a_half_width_of_one_more_solve():
     assert scatter([[row("a", 0.0)]] * 2, row("a", 0.0)) == 0.0
 
 
-def two(mean, before, *, ratio=2.0, estimate=0.05):
-    return TwoMeshes(zone="a", mean=mean, before=before, ratio=ratio, estimate=estimate)
+def two(mean, before, *, ratio=2.0, estimate=0.05, area=0.01):
+    return TwoMeshes(zone="a", mean=mean, before=before, ratio=ratio, estimate=estimate, area=area)
 
 
 @pytest.mark.parametrize(
     ("zone", "error"),
     [
         (two(0.2, 0.1), 0.1 / (2.0**1.5 - 1.0)),  # rises: the difference, extrapolated
+        (two(0.2, 0.1, area=0.001), 0.1 / (2.0 - 1.0)),  # the same at a short seam
         (two(0.2, 0.199), 0.05 * 0.2),  # hardly rises: what waves err by
         (two(0.2, 0.21), 0.05 * 0.2),
         (two(0.2, 1.9), 2.0 * 0.05 * 0.2),  # falls far: sharp folds of the coarser mesh

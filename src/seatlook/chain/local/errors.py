@@ -36,6 +36,7 @@ def with_error(scene: Scene, fine: Solution, coarse: Solution) -> Solution:
             before=before[name]["w2_mean"] if name in before else math.nan,
             ratio=size_before.get(name, 0.0) / size[name],
             estimate=estimate[name],
+            area=row.area,
         )
         for name, row in rows.items()
     ]
