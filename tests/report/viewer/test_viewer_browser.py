@@ -110,6 +110,58 @@ def test_it_is_turned_and_enlarged_by_mouse_and_by_keyboard(page):
     assert differs(shown[-1], pixels(page))
 
 
+def test_fingers_turn_enlarge_and_shift(browser, address):
+    context = browser.new_context(
+        offline=True, viewport={"width": 760, "height": 700}, has_touch=True
+    )
+    page, messages = context.new_page(), []
+    listen(page, messages)
+    page.goto(address)
+    open_viewer(page)
+    page.locator("#viewer-canvas").scroll_into_view_if_needed()
+    area, scrolled = page.locator("#viewer-canvas").bounding_box(), page.evaluate("window.scrollY")
+    x, y = area["x"] + area["width"] / 2, area["y"] + area["height"] / 2
+    protocol = context.new_cdp_session(page)
+
+    def touch(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x + u, "y": y + v, "id": k} for k, (u, v) in enumerate(places)]
+        protocol.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    def swipe(*ways: tuple[tuple[float, float], tuple[float, float]]) -> np.ndarray:
+        touch("touchStart", *(start for start, _ in ways))
+        for share in (0.25, 0.5, 0.75, 1.0):
+            touch(
+                "touchMove",
+                *((a + share * (c - a), b + share * (d - b)) for (a, b), (c, d) in ways),
+            )
+        touch("touchEnd")
+        settle(page)
+        return pixels(page)
+
+    def covered(picture: np.ndarray) -> np.ndarray:
+        return np.abs(picture - picture[0, 0]).max(axis=2) > 12
+
+    first = pixels(page)
+    turned = swipe(((-40, 0), (40, 10)))
+    assert differs(first, turned)
+    apart = swipe(((-30, 0), (-60, 0)), ((30, 0), (60, 0)))
+    assert covered(apart).sum() > 1.5 * covered(turned).sum()
+    together = swipe(((-60, 0), (-30, 0)), ((60, 0), (30, 0)))
+    assert abs(covered(together).sum() / covered(turned).sum() - 1) < 0.05
+    shifted = swipe(((-30, 0), (30, 0)), ((30, 0), (90, 0)))
+    middles = [np.argwhere(covered(seen)).mean(axis=0) for seen in (together, shifted)]
+    # The seat goes where the fingers go, in pixels of the screen.
+    assert middles[1][1] - middles[0][1] == pytest.approx(60, abs=8)
+    assert middles[1][0] == pytest.approx(middles[0][0], abs=8)
+    # A tap names a place, and the page itself has stayed.
+    touch("touchStart", (0, 0))
+    touch("touchEnd")
+    assert page.locator("#viewer-here").text_content().startswith("Here: ")
+    assert page.evaluate("window.scrollY") == scrolled
+    context.close()
+    assert messages == []
+
+
 def test_light_material_and_map_change_what_is_seen(page):
     open_viewer(page)
     last = pixels(page)
@@ -121,6 +173,7 @@ def test_light_material_and_map_change_what_is_seen(page):
         lambda: page.locator("#viewer-look").select_option(index=1),
         lambda: (put(page, "hex", "#7a1020"), page.locator("#viewer-hex").press("Enter")),
         lambda: (put(page, "lab", "70, 0, 30"), page.locator("#viewer-lab").press("Enter")),
+        lambda: put(page, "roughness", "0.1"),
         lambda: put(page, "nap", "0.9"),
         lambda: page.locator("#viewer-layer").select_option(label="W2"),
         lambda: page.locator("#viewer-layer").select_option(label="Gap"),
@@ -310,7 +363,7 @@ def test_a_lost_context_leaves_the_pictures(page):
     assert page.locator(".grid img").first.is_visible()
 
 
-@pytest.mark.parametrize("width", [360, 1280])
+@pytest.mark.parametrize("width", [360, 1280, 1920])
 def test_no_accessibility_violation_and_nothing_overflows(browser, address, width):
     def colour_and_copy(page):
         page.locator("#viewer-layer").select_option(label="W2")
