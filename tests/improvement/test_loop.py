@@ -36,6 +36,7 @@ class Valley:
     wrong : factor of the amounts that straight answers promise
     frozen : candidates that may not change
     breaks : [mm] from which a cover cannot be solved
+    repairs : moves that make sewn lines agree, at the start
     """
 
     best: np.ndarray
@@ -43,6 +44,7 @@ class Valley:
     wrong: float = 1.0
     frozen: frozenset[int] = frozenset()
     breaks: float = np.inf
+    repairs: tuple[Move, ...] = ()
     asked: list[dict[Candidate, float]] = field(default_factory=list)
 
     def __post_init__(self):
@@ -78,6 +80,7 @@ class Hillside:
         ]
         self.moves = tuple(m for k, m in enumerate(moves) if k not in valley.frozen)
         self.fixed = tuple(m for k, m in enumerate(moves) if k in valley.frozen)
+        self.repairs = valley.repairs if not self.amounts.any() else ()
 
     def slope(self, move):
         return float(self.gradient[int(move.names[0])])
@@ -155,6 +158,24 @@ def test_what_limits_it_is_named(change, most, why):
     valley = replace(Valley(best=np.array([5.0, 4.0]), matrix=np.eye(2)), **change)
     *_, last = descend(valley, most=most)
     assert why in last.limit
+
+
+@pytest.mark.parametrize(("closes", "first"), [(3.5, "0"), (9.0, "1")])
+def test_lines_that_differ_are_closed_first_unless_that_is_worse(closes, first):
+    """Closing the first gains little, at 9 mm it loses; the second is the steepest."""
+    valley = Valley(best=np.array([2.0, 4.0]), matrix=np.eye(2))
+    line = valley.candidates[0]
+    repair = Move(
+        kind="length", names=("0",), places=(("", ""),), share={line: 1.0},
+        seams=frozenset({7}), closes=closes * MM, mends=1.0,
+    )  # fmt: skip
+    steps = list(descend(replace(valley, repairs=(repair,)), most=3))
+    values = [step.value.total for step in steps]
+    assert values == sorted(values, reverse=True)
+    assert steps[1].chosen[0].names == (first,)
+    assert steps[1].closed == ({7} if first == "0" else set())
+    if first == "0":
+        assert steps[1].made[line] == closes * MM
 
 
 def test_a_step_that_cannot_be_solved_is_tried_shorter():

@@ -78,6 +78,7 @@ class Place(Protocol):
     """What is known of moves where a cover is: slopes, and gains along straight answers."""
 
     moves: tuple[Move, ...]
+    repairs: tuple[Move, ...]
     fixed: tuple[Move, ...]
 
     def slope(self, move: Move) -> float:
@@ -150,8 +151,9 @@ def descend(task: Task, *, most: int) -> Iterator[Iteration]:
         step = _Step(task, place, now, most)
         found, ended = step.best(reach, LEAST_GAIN * start)
         if found is not None:
-            share = (now.value.total - found.value.total) / found.expected
-            reach = _next_reach(reach, share)
+            if found.expected > 0.0:
+                share = (now.value.total - found.value.total) / found.expected
+                reach = _next_reach(reach, share)
             ended = _AS_GOOD if found.good else ""
             now = found
             yield now
@@ -176,7 +178,16 @@ class _Step:
         self.solves = 0
 
     def best(self, reach: float, least: float) -> tuple[Iteration | None, str]:
-        """The next iteration, or None and why there is none."""
+        """The next iteration, or None and why there is none.
+
+        Sewn lines that do not agree say where a pattern was changed. They are put right first,
+        if that makes nothing worse.
+        """
+        for move in self._place.repairs[:_REFUSALS]:
+            if _allowed(move, self._now.chosen, self._most):
+                found = self._mended(move)
+                if found is not None and found.value.total <= self._now.value.total:
+                    return found, ""
         left = [
             m
             for m in self._place.moves
@@ -196,6 +207,11 @@ class _Step:
             left.remove(move)
         return None, _NO_GAIN
 
+    def _mended(self, move: Move) -> Iteration | None:
+        self.solves += 1
+        found = self._task.value(self._made(move, move.closes))
+        return None if found is None else self._iteration(move, move.closes, found, 0.0)
+
     def _checked(self, move: Move, amount: float, gain: float) -> Iteration | None:
         values: dict[float, tuple[Parts, float]] = {}
 
@@ -209,19 +225,23 @@ class _Step:
 
         closes = move.closes if abs(move.closes) <= self._place.room(move) else 0.0
         best, _ = checked(change, amount, self._place.slope(move), closes)
-        if best not in values:
-            return None
+        return self._iteration(move, best, values[best], gain) if best in values else None
+
+    def _iteration(
+        self, move: Move, amount: float, value: tuple[Parts, float], expected: float
+    ) -> Iteration:
         again = _adjusts(move, self._now.chosen)
+        closed = move.seams if move.closes and amount == move.closes else frozenset[int]()
         return Iteration(
             number=self._now.number + 1,
-            value=values[best][0],
-            beyond=values[best][1],
-            made=self._made(move, best),
+            value=value[0],
+            beyond=value[1],
+            made=self._made(move, amount),
             chosen=self._now.chosen if again else (*self._now.chosen, move),
-            sentence=f"{'adjusted: ' if again else ''}{in_words(move, best)}",
-            expected=gain,
+            sentence=f"{'adjusted: ' if again else ''}{in_words(move, amount)}",
+            expected=expected,
             solves=self._now.solves + self.solves,
-            closed=self._now.closed | (move.seams if closes and best == closes else frozenset()),
+            closed=self._now.closed | closed,
         )
 
     def _made(self, move: Move, amount: float) -> Mapping[Candidate, float]:

@@ -121,6 +121,12 @@ class _Search:
         """
         start = value = self._start
         x, left, proposals = self._ways.x, list(moves), list[Proposal]()
+        for move in self._ways.repairs[:1]:
+            amount, gain, there = self._checked(move, move.closes, value, ())
+            if amount == move.closes and gain >= 0.0:
+                x, value = there, value - gain
+                left = [other for other in left if not _same(other, move)]
+                proposals.append(_proposal(move, amount, gain, start))
         while left and len(proposals) < count:
             gain, amount, move = self._ways.choose(left, x=x)
             if gain < LEAST_GAIN * start or abs(amount) < SMALLEST:
@@ -133,13 +139,7 @@ class _Search:
                 if gain < LEAST_GAIN * start:
                     continue
                 value -= gain
-            share = gain / start
-            proposals.append(
-                Proposal(
-                    move=move, amount=amount, gain=gain, share=share,
-                    sentence=sentence(move, amount, share),
-                )
-            )  # fmt: skip
+            proposals.append(_proposal(move, amount, gain, start))
         return proposals
 
     def _checked(
@@ -158,6 +158,13 @@ class _Search:
         closes = move.closes if abs(move.closes) <= self._ways.room(move) else 0.0
         best, gain = checked(change, amount, self._ways.slope(move), closes)
         return best, gain, shapes[best]
+
+
+def _proposal(move: Move, amount: float, gain: float, start: float) -> Proposal:
+    share = gain / start
+    return Proposal(
+        move=move, amount=amount, gain=gain, share=share, sentence=sentence(move, amount, share)
+    )
 
 
 def _same(a: Move, b: Move) -> bool:

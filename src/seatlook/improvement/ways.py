@@ -25,9 +25,8 @@ from seatlook.model import FloatArray, Scene, Solution
 from seatlook.solver.balance import Balance
 
 _BALANCED = 1e-6  # residual at which slopes are taken
-SHORT_LIST = 16  # moves whose answer is looked at
-_REPAIRS = 8  # of them, at most, that make sewn lines agree
-_RIVAL = 0.5  # of what the best repair mends, from which another is its rival
+SHORT_LIST = 12  # moves whose answer is looked at
+_RIVAL = 0.8  # of what the best repair mends, from which another is its rival
 LEAST_GAIN = 0.03  # of the objective
 REACH = 0.015  # m of movement, beyond which straight answers mislead
 SMALLEST = 3e-4  # m that nobody cuts
@@ -37,8 +36,6 @@ _MEANT = 0.5  # of the foam's slope, from which a wire that holds nothing goes b
 _NEAR = (0.3, 3.0)  # of the amount that closes a seam: so near, that is looked at
 _CLOSING = 0.75  # of the largest gain, for which a seam is closed
 _CLOSE = 0.8  # of the amount: a better one that is closer is not looked at
-
-_Tried = tuple[float, float, Move]
 
 
 class Ways:
@@ -56,6 +53,7 @@ class Ways:
     ----------
     value : Parts                  of the objective at the balance
     moves : tuple of Move          that may be made, the steepest first
+    repairs : tuple of Move        that make sewn lines agree which do not, the likeliest first
     fixed : tuple of Move          that may not, if they were asked for
     """
 
@@ -76,6 +74,7 @@ class Ways:
         self._gradient = objective.gradient(self._sheet, self.x)
         self.value = found.value
         self.moves: tuple[Move, ...] = ()
+        self.repairs: tuple[Move, ...] = ()
         self.fixed: tuple[Move, ...] = ()
 
     def hooked(self, wire: Unhooked) -> Move:
@@ -95,6 +94,13 @@ class Ways:
             return self._wires[id(move)][0]
         return move.total(self._found.slope)
 
+    def rivals(self, moves: Sequence[Move]) -> tuple[Move, ...]:
+        """Those that mend about as much as the best, by what slopes say of them."""
+        able = [m for m in moves if m.mends > MENDS and abs(m.closes) <= self._limits[m.kind]]
+        most = max((m.mends for m in able), default=0.0)
+        alike = [m for m in able if m.mends >= _RIVAL * most]
+        return tuple(sorted(alike, key=lambda m: self.slope(m) * m.closes))
+
     def room(self, move: Move) -> float:
         """How far [m] a move may still go the way that the objective falls."""
         sign, limit = -np.sign(self.slope(move)), self._limits[move.kind]
@@ -111,9 +117,8 @@ class Ways:
     ) -> tuple[float, float, Move]:
         """Gain, amount and move of what helps most from ``x``, or from the balance.
 
-        Sewn lines that do not agree say where a pattern was changed: what mends that goes first if
-        it gains at all. A wire that is there and holds nothing is meant to be used: it goes
-        before foam that gains about as much for each mm, however much foam could be added.
+        A wire that is there and holds nothing is meant to be used: it goes before foam that gains
+        about as much for each mm, however much foam could be added.
 
         Parameters
         ----------
@@ -122,24 +127,11 @@ class Ways:
         start = self.x if x is None else x
         tried = [(*self._along(move, start, reach), move) for move in moves]
         best = max(tried, key=lambda one: one[0])
-        repair = self._repair(tried)
-        if repair is not None:
-            return repair
         if best[2].kind != "foam":
             return best
         least = _MEANT * abs(self.slope(best[2]))
         wires = [t for t in tried if t[2].kind == "wire" and abs(self.slope(t[2])) > least]
         return max([t for t in wires if t[0] > 0.0], key=lambda one: one[0], default=best)
-
-    def _repair(
-        self, tried: Sequence[tuple[float, float, Move]]
-    ) -> tuple[float, float, Move] | None:
-        """Of what makes sewn lines agree and gains something, the best; None if nothing does."""
-        least = LEAST_GAIN * self.value.total
-        able = [t for t in tried if t[2].mends > MENDS and t[0] > least and t[1] * t[2].closes > 0]
-        most = max((t[2].mends for t in able), default=0.0)
-        alike = [t for t in able if t[2].mends >= _RIVAL * most]
-        return max(alike, key=lambda one: one[0], default=None)
 
     def _along(self, move: Move, x: FloatArray, reach: float) -> tuple[float, float]:
         """Largest gain along a move from ``x``, and the amount that gives it."""
@@ -211,10 +203,9 @@ def ways_at(
         wires = unhooked_wires(scene, solution)
         moves = (*moves, *(ways.hooked(w) for w in wires if w.wire not in scene.improve.frozen))
     held = {c: v for c, v in found.slope.items() if c not in free} if with_fixed else {}
-    moves = (*moves, *mending(changes, [c for c in every if c in free], made, limits["offset"]))
-    steep = sorted(moves, key=lambda m: -abs(ways.slope(m)) * limits[m.kind])
-    repairs = sorted((m for m in steep if m.mends > MENDS), key=lambda m: -m.mends)[:_REPAIRS]
-    ways.moves = (*repairs, *(m for m in steep if m not in repairs))
+    ways.moves = tuple(sorted(moves, key=lambda m: -abs(ways.slope(m)) * limits[m.kind]))
+    ordered = [c for c in every if c in free]
+    ways.repairs = ways.rivals((*moves, *mending(changes, ordered, made, limits["offset"])))
     ways.fixed = moves_of(changes, held, pairs=pairs)
     return ways
 

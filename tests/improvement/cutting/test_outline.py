@@ -119,3 +119,37 @@ def test_all_of_a_mesh_border_lies_on_the_sides(solved, scene):
     for outline in mesh_outlines(solved.cover, scene.pattern):
         seen = np.concatenate([side.at for side in outline.sides])
         assert set(seen) == set(range(len(outline.vertices)))
+
+
+def ring(count=90, radius=0.1):
+    """A round panel with one edge, which ends where it begins."""
+    turn = 2 * np.pi * np.arange(count) / count
+    outline = radius * np.column_stack([np.cos(turn), np.sin(turn)])
+    panel = Panel(
+        name="O",
+        outline=outline,
+        corners=np.array([7]),
+        cut_outline=outline,
+        grain=np.array([1.0, 0.0]),
+    )
+    edges = {"O.rim": Edge(name="O.rim", panel="O", start=7, end=7)}
+    return Pattern(panels=(panel,), edges=MappingProxyType(edges), seams=())
+
+
+def test_a_closed_side_moves_out_evenly():
+    pattern = ring()
+    (outline,) = drawn_outlines(pattern)
+    way = outline.offset(0, lambda arc: np.full_like(arc, 3e-3))
+    radius = np.linalg.norm(pattern.panels[0].outline + way, axis=1)
+    assert radius == pytest.approx(np.full(len(radius), 0.103), abs=1e-5)
+
+
+def test_a_closed_side_gets_longer_by_what_is_asked():
+    pattern = ring()
+    (outline,) = drawn_outlines(pattern)
+    points = pattern.panels[0].outline + outline.lengthen(0, 5e-3)
+    before, after = (
+        np.linalg.norm(np.diff(p, axis=0, append=p[:1]), axis=1).sum()
+        for p in (pattern.panels[0].outline, points)
+    )
+    assert after - before == pytest.approx(5e-3, rel=5e-3)

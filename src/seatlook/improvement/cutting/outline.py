@@ -46,6 +46,11 @@ class Side:
         return float(self.arc[-1])
 
     @property
+    def closed(self) -> bool:
+        """Whether it goes all the way round, and ends where it begins."""
+        return bool(self.at[0] == self.at[-1])
+
+    @property
     def stops(self) -> FloatArray:
         """Places [m] of its ends and notches."""
         return np.concatenate([[0.0], self.notches, [self.length]])
@@ -75,6 +80,10 @@ class Outline:
         side = self.sides[number]
         amount = shape(side.arc)
         way = np.zeros((len(self.vertices), 2))
+        if side.closed:
+            way[side.at] = amount[:, None] * side.normal
+            way[side.at[0]] = 0.5 * (amount[[0, -1]] @ side.normal[[0, -1]])
+            return way
         ends = [self._corner(number, end, float(amount[end])) for end in (0, -1)]
         way[side.at] += amount[:, None] * side.normal + self._evenly(side, ends)
         for end, corner in zip((0, -1), ends, strict=True):
@@ -84,9 +93,12 @@ class Outline:
     def lengthen(self, number: int, amount: float = 1.0) -> FloatArray:
         """Make a side longer by ``amount`` [m], half at each end; return (r, 2) [m].
 
-        It keeps its form; its neighbours turn about their far corners.
+        It keeps its form; its neighbours turn about their far corners. A closed side grows evenly.
         """
         side = self.sides[number]
+        if side.closed:
+            # Whatever its form, it gets longer by a full turn times what it moves outward.
+            return self.offset(number, lambda arc: np.full_like(arc, amount / (2.0 * np.pi)))
         ends = [sign * 0.5 * amount * side.tangent[end] for sign, end in ((-1.0, 0), (1.0, -1))]
         share = side.arc / side.length
         way = np.zeros((len(self.vertices), 2))
