@@ -91,6 +91,7 @@ def assemble(
         stages=scene.stages,
         foam=scene.foam,
         thread=scene.thread,
+        seam_kinds=scene.seam_kinds,
         criteria=criteria_of(materials, scene.curvature, default=scene.c_threshold),
         element_size=float(mesh.edge_lengths(uv, faces).mean()),
         seed=scene.seed,

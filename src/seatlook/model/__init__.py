@@ -12,7 +12,7 @@ from seatlook.model.cover import (
     WrinkleMap,
 )
 from seatlook.model.criteria import Criteria, CurvatureMode, StrainMeasure, criteria_of
-from seatlook.model.fastenings import Thread, Wire
+from seatlook.model.fastenings import SeamKind, Thread, Wire
 from seatlook.model.light.camera import VIEWS, Camera, framed_view, named_view, sphere_distance
 from seatlook.model.light.lamps import (
     LIGHTS,
@@ -79,6 +79,7 @@ __all__ = [
     "Rig",
     "Scene",
     "Seam",
+    "SeamKind",
     "ShellResult",
     "ShellState",
     "Shells",

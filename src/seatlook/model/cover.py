@@ -19,7 +19,7 @@ from seatlook.model._check import (
     ints,
 )
 from seatlook.model.criteria import Criteria
-from seatlook.model.fastenings import Thread, Wire
+from seatlook.model.fastenings import SeamKind, Thread, Wire
 from seatlook.model.material import Foam, Material
 from seatlook.model.stage import Stage
 
@@ -167,6 +167,8 @@ class Cover:
     panel : (m,) int64            index into ``panel_names`` and ``materials``
     zone : (m,) int64             index into ``zone_names``
     element_size : float [m]      mean edge length h
+    seam_kinds : seam -> how it is sewn, as far as that is seen; others are French, those that a
+        hook pulls into a trench are plain and flat
     criteria : how it is assessed: the scene's mode, and the thresholds of its panels
     scene_digest : of everything that it was made from, see ``assembly.digest``
     """
@@ -186,6 +188,9 @@ class Cover:
     stages: tuple[Stage, ...] = ()
     foam: Foam | None = None
     thread: Thread = field(default_factory=Thread)
+    seam_kinds: MappingProxyType[str, SeamKind] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
     criteria: Criteria | None = None
     element_size: float
     seed: int = 0

@@ -23,6 +23,7 @@ class Thread:
     offset : float [m]    of the rows from the seam
     pitch : float [m]     from needle hole to needle hole
     length, width : float [m]   of the part of a stitch that is seen; width 0 for a plain seam
+    gauge : float [m]     between the two rows of ``top stitch 2``
     """
 
     colour: FloatArray | None = None
@@ -30,6 +31,7 @@ class Thread:
     pitch: float = 0.005
     length: float = 0.0040
     width: float = 0.0009
+    gauge: float = 0.006
 
     def __post_init__(self) -> None:
         if self.colour is not None:
@@ -38,12 +40,42 @@ class Thread:
         positive(self, "pitch", "length")
         in_range(self, "offset", 0.0, 0.02)
         in_range(self, "width", 0.0, 0.005)
+        in_range(self, "gauge", 0.001, 0.008)
         if self.length > self.pitch:
             raise InputError.single(
                 "Thread.length",
                 got=f"{1e3 * self.length:g} mm",
                 expected=f"at most the pitch, {1e3 * self.pitch:g} mm",
             )
+
+
+SEAM_KINDS = ("plain", "top stitch 1", "top stitch 2", "French", "lapped")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeamKind:
+    """How a seam is sewn, as far as it is seen.
+
+    Parameters
+    ----------
+    kind : ``plain``: no thread is seen, the allowance lies open to both sides; ``French``: the
+        same with a row of top stitch on each; ``top stitch 1`` or ``2``: the allowance is folded
+        to one side and stitched down there with one row or two; ``lapped``: one panel lies over
+        the other, stitched down with one row
+    side : ``a`` or ``b`` of the seam, the one that is stitched down or lies over the other
+    """
+
+    kind: str = "French"
+    side: str = "a"
+
+    def __post_init__(self) -> None:
+        for name, choices in (("kind", SEAM_KINDS), ("side", ("a", "b"))):
+            if getattr(self, name) not in choices:
+                raise InputError.single(
+                    f"SeamKind.{name}",
+                    got=repr(getattr(self, name)),
+                    expected=f"one of {', '.join(choices)}",
+                )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,7 +13,7 @@ import numpy as np
 from seatlook.errors import InputError
 from seatlook.model._check import FARTHEST, FloatArray, IntArray, floats, ints, positive
 from seatlook.model.criteria import CurvatureMode
-from seatlook.model.fastenings import Thread
+from seatlook.model.fastenings import SeamKind, Thread
 from seatlook.model.light.camera import Camera
 from seatlook.model.light.lamps import Rig
 from seatlook.model.light.surroundings import surroundings_named
@@ -266,6 +266,7 @@ class Scene:
     element_size : float [m]; smallest_notch : float [m], below which reading closed cuts
     c_threshold : float [1/m]
     textures : name -> Appearance, or None for the panels' own materials
+    seam_kinds : seam -> how it is sewn; of others see ``Cover``
     """
 
     name: str
@@ -291,6 +292,9 @@ class Scene:
     hem: bool = False
     allowed: tuple[str, ...] = ()
     thread: Thread = field(default_factory=Thread)
+    seam_kinds: MappingProxyType[str, SeamKind] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
     element_size: float
     element_sizes: MappingProxyType[str, float] = field(
         default_factory=lambda: MappingProxyType({})

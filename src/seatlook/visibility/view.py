@@ -124,8 +124,11 @@ class View:
         self.mode, self.cutoff, self.quality = mode, cutoff, sampling.quality
         self.element_size = element_size or solution.cover.element_size
         self.reference = self._reference()
-        # The studio that pictures of this solution share.
-        self.test_studio = Studio(solution, like=like) if like else studio(solution)
+        # Seams are what they are in both pictures: they are drawn without what lifts and puckers
+        # them, which would hide waves beside them.
+        self.test_studio = (
+            Studio(solution, like=like, built=False) if like else studio(solution, built=False)
+        )
         self.reference_studio = self.studio_of(self.reference)
         self.region: Region = region(self.test_studio, self.camera)
         self._under: tuple[Rig, Region] | None = None
@@ -161,8 +164,8 @@ class View:
     def studio_of(self, shape: Solution) -> Studio:
         """Make a studio for another shape of the cover, as the mode asks."""
         if self.mode == "normals":
-            return Studio(self.solution, shading=shape, seen=self.test_studio)
-        return Studio(shape, seen=self.test_studio)
+            return Studio(self.solution, shading=shape, seen=self.test_studio, built=False)
+        return Studio(shape, seen=self.test_studio, built=False)
 
     @functools.cached_property
     def heights(self) -> FloatArray:

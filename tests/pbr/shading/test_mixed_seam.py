@@ -83,7 +83,7 @@ def sewn(fold, appearances=None):
 
 def drawn(fold):
     """Surface, and of its panels' vertices: panel, distance from and place along the seam."""
-    surface = drawn_surface(sewn(fold))
+    surface = drawn_surface(sewn(fold), built=False)
     mesh = surface.mesh
     owner = np.zeros(surface.vertices, dtype=int)
     owner[mesh.faces[: surface.faces]] = mesh.panel[: surface.faces, None]
@@ -162,7 +162,7 @@ def test_thread_of_the_panels_colour_is_that_of_its_own_panel():
     """A red and a blue panel: each stitch is a lighter tone of the cloth it lies on."""
     red = Appearance(albedo=np.array([0.5, 0.06, 0.03]), f0=0.0)
     blue = Appearance(albedo=np.array([0.04, 0.08, 0.45]), f0=0.0)
-    studio = Studio(sewn(0.0, (red, blue)), thread=Thread())
+    studio = Studio(sewn(0.0, (red, blue)), thread=Thread(), built=False)
     away, normals = frames(0.0)
     noon = replace(sun(elevation_deg=80, azimuth_deg=0), colour=np.ones(3))
     rig = Rig(name="noon", lights=(noon,))

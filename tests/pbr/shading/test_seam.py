@@ -2,39 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from seatlook.errors import InputError
-from seatlook.model import Points, Rig, Stitching, Thread, sun
+from seatlook.model import Rig, Thread, sun
 from seatlook.pbr.kernels.stitch import seam_relief
 from seatlook.pbr.shading.seam import pack_thread
 from seatlook.pbr.shading.studio import Studio
 from seatlook.pbr.shading.surface import drawn_surface
 from support.reference.lit_sheets import GREY, above, flat, sheet
+from support.reference.sewn_sheet import sewn
 
 TOP_STITCH = pack_thread(Thread())
 RIG = Rig(name="noon", lights=(sun(elevation_deg=80, azimuth_deg=0),))
-
-
-def sewn(gap=0.0002):
-    """Two panels along x = 0, ``gap`` apart, sewn vertex to vertex."""
-    solution = sheet(flat, panels=2, steps=10, size=0.1)
-    x = np.array(solution.positions)
-    right = np.arange(len(x)) >= len(x) // 2
-    x[right, 0] += gap
-    side = [
-        np.flatnonzero(~right & (np.abs(x[:, 0]) < 1e-9)),
-        np.flatnonzero(right & (np.abs(x[:, 0] - gap) < 1e-9)),
-    ]
-    a, b = (
-        Points(vertices=np.column_stack([v, v]), weights=np.tile([1.0, 0.0], (len(v), 1)))
-        for v in side
-    )
-    seam = Stitching(name="middle", a=a, b=b, length=np.full(len(a), 0.01), stage="sew")
-    return replace(solution, positions=x, cover=replace(solution.cover, stitchings=(seam,)))
 
 
 def test_gap_is_closed_half_way_from_both_sides():

@@ -35,6 +35,7 @@ from seatlook.model import (
     Hysteresis,
     Material,
     Points,
+    SeamKind,
     Solution,
     Stage,
     Stitching,
@@ -51,7 +52,7 @@ _TYPES: dict[str, type] = {
     t.__name__: t
     for t in (
         Anchor, Appearance, Cover, Criteria, Curve, Fabric, Foam, FoamMaterial, Hem, Hysteresis,
-        Material, Points, Solution, Stage, Stitching, TextureMaps, Thread, Wire,
+        Material, Points, SeamKind, Solution, Stage, Stitching, TextureMaps, Thread, Wire,
     )
 }  # fmt: skip
 

@@ -24,6 +24,7 @@ from seatlook.io.schema import (
     Texts,
 )
 from seatlook.io.surface.axes import UNITS, UPS
+from seatlook.model.fastenings import SEAM_KINDS
 from seatlook.model.light.surroundings import SURROUNDINGS
 from seatlook.model.scene import ALLOWED, ELEMENT_SIZES, LARGEST_SEED, SCORE_MEASURES, TOLERANCES
 from seatlook.model.stage import LONGEST, RAMPS, SHORTEST
@@ -159,7 +160,16 @@ KEYS: dict[str, Kind] = {
             "pitch_mm": Number(low=0.5, high=50, scale=MM, default=5.0),
             "length_mm": Number(low=0.1, high=50, scale=MM, default=4.0),
             "width_mm": Number(low=0, high=5, scale=MM, default=0.9),
+            "gauge_mm": Number(low=1, high=8, scale=MM, default=6.0),
         }
+    ),
+    "seam": Named(
+        Table(
+            {
+                "kind": Text(choices=SEAM_KINDS, required=True),
+                "side": Text(choices=("a", "b"), default="a"),
+            }
+        )
     ),
     "zones": Table(
         {

@@ -29,6 +29,7 @@ from seatlook.io.scene.checks import (
 )
 from seatlook.io.scene.files import SceneFiles
 from seatlook.io.scene.keys import AS_BUILT, scene_keys
+from seatlook.io.scene.sewing import make_seam_kinds, make_thread
 from seatlook.io.scene.ties import (
     make_boxes,
     make_frames,
@@ -54,7 +55,6 @@ from seatlook.model import (
     Pattern,
     Pose,
     Scene,
-    Thread,
 )
 from seatlook.model.criteria import DEFAULT_THRESHOLD
 from seatlook.model.scene import FIRST_SIZE
@@ -190,8 +190,8 @@ class _Reader:
         check_distance(document, parts["placement"], foam)
         check_scale(document, pattern, foam)
         check_hem(document, pattern, row["hem"])
-        with document.blame(("thread",)):
-            parts["thread"] = _thread(row["thread"])
+        parts["thread"] = make_thread(document, row["thread"])
+        parts["seam_kinds"] = make_seam_kinds(document, row["seam"], pattern)
         return parts
 
     def pattern(self) -> Pattern | None:
@@ -383,7 +383,3 @@ def _check_mesh(document: Document, row: dict[str, Any]) -> None:
             ("panel", name, "element_size_mm"), "a size", "none beside mesh.tolerance_percent",
             "delete it: the mesh follows from the tolerance",
         )  # fmt: skip
-
-
-def _thread(row: dict[str, Any]) -> Thread:
-    return Thread(**{key.removesuffix("_mm"): v for key, v in row.items() if v is not None})

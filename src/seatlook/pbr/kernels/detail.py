@@ -10,6 +10,7 @@ from seatlook.pbr.kernels import leaf
 from seatlook.pbr.kernels.grain import grain, holes
 from seatlook.pbr.kernels.measured import measured
 from seatlook.pbr.kernels.relief_samples import spread
+from seatlook.pbr.kernels.sewn import sewn_relief
 from seatlook.pbr.kernels.stitch import away_from_seam, reach, seam_at, seam_relief, tilt
 from seatlook.pbr.kernels.surface import along, dot, unit
 
@@ -47,7 +48,7 @@ def detail_of(stage, sample, material, relief, has_relief):
     mesh, look, hit, place = stage.mesh, stage.look, sample.hit, sample.place
     f, b1, b2, n = hit.face, hit.b1, hit.b2, place.n
     roughness, metal, tint = material.roughness, material.metalness, (1.0, 1.0, 1.0)
-    share, own, light, within, beside = 1.0, 0.0, 1.0, 0.0, 0.0
+    share, own, shade, light, within, beside = 1.0, 0.0, 1.0, 1.0, 0.0, 0.0
     if material.texture >= 0 or material.maps >= 0 or material.perforation_diameter > 0.0:
         u, w = _pattern_at(mesh, f, b1, b2)
         width = hit.t * hit.between / np.sqrt(max(0.05, dot(n, place.v)))
@@ -61,19 +62,24 @@ def detail_of(stage, sample, material, relief, has_relief):
         if material.perforation_diameter > 0.0:
             pitch, diameter = material.perforation_pitch, material.perforation_diameter
             light = 1.0 - holes(pitch, diameter, u, w, width)
-    distance, arc = seam_at(mesh, f, b1, b2)
+    distance, arc, rows = seam_at(mesh, f, b1, b2)
     if distance < reach(look.thread):
         away, onward = away_from_seam(mesh, f)
         width = hit.t * hit.between / np.sqrt(max(0.05, abs(dot(hit.plane, place.v))))
-        sa, so, left, covered = seam_relief(look.thread, distance, arc, width)
+        if look.thread.built:
+            sa, so, left, covered, bright = sewn_relief(look.thread, rows, distance, arc, width)
+        else:
+            sa, so, left, covered = seam_relief(look.thread, distance, arc, width)
+            bright = 1.0
         n = unit(tilt(n, away, onward, sa, so))
         share *= left
-        own = covered * look.thread.own
+        own, shade = covered * look.thread.own, bright
         roughness += covered * max(0.0, 0.6 - roughness)
     if has_relief:
         n, within, beside, grey = spread(stage, sample, material, n, (u, w), relief)
         share *= grey
     share *= 1.0 - own
+    own *= shade
     base, thread = material.albedo, look.thread.colour
     colour = (
         base[0] * tint[0] * share + own * thread[0],

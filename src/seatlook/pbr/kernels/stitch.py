@@ -15,7 +15,8 @@ class Thread(NamedTuple):
 
     ``offset`` from the seam line; ``pitch``: from hole to hole; ``length, width`` of one stitch,
     width 0 for none; ``colour``: linear, of which the thread has the share ``own`` and the panel's
-    for the rest.
+    for the rest. ``gauge``: to a second row, 0 where there is none; ``built``: whether seams
+    are drawn as they are built, see ``sewn``, or as grooves with one even row.
     """
 
     offset: float
@@ -24,6 +25,8 @@ class Thread(NamedTuple):
     width: float
     colour: tuple[float, float, float]
     own: float
+    gauge: float
+    built: bool
 
 
 # Depth [m] and width [m] of the roll into the seam and of the line the stitches press in.
@@ -34,20 +37,29 @@ _HOLE = 0.00045
 
 @leaf()
 def seam_at(mesh, f, b1, b2):
-    """Distance from the seam and length along it at a point of face f; infinite where none."""
+    """Distance from the seam, length along it and rows of stitches at a point of face f.
+
+    The distance is infinite where there is none.
+    """
     a, b, c = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
     b0 = 1.0 - b1 - b2
     s, t, u = mesh.seam[a, 1], mesh.seam[b, 1], mesh.seam[c, 1]
     # Where the nearest seam changes, the length along it jumps: no stitch crosses that.
     if not max(s, t, u) - min(s, t, u) < 0.006:
-        return np.inf, 0.0
+        return np.inf, 0.0, 0.0
     distance = b0 * mesh.seam[a, 0] + b1 * mesh.seam[b, 0] + b2 * mesh.seam[c, 0]
-    return distance, b0 * s + b1 * t + b2 * u
+    rows = mesh.seam[a, 2] if mesh.seam[a, 2] == mesh.seam[b, 2] == mesh.seam[c, 2] else 0.0
+    return distance, b0 * s + b1 * t + b2 * u, rows
 
 
 @leaf()
 def reach(thread):
-    """Distance [m] beyond which nothing of a seam shows: six widths of its widest groove."""
+    """Distance [m] beyond which nothing of a seam shows: six widths of its widest groove.
+
+    Of one as it is built: three widths of the pucker beside its last row.
+    """
+    if thread.built:
+        return max(thread.offset + thread.gauge + 0.0057, 0.006)
     return thread.offset + 6.0 * _PRESS_WIDTH + thread.width
 
 
@@ -77,7 +89,7 @@ def away_from_seam(mesh, f):
 
 @leaf()
 def seam_relief(thread, distance, arc, width):
-    """Relief beside a seam for a sample ``width`` [m] wide.
+    """Relief beside a seam that is a groove with one row, for a sample ``width`` [m] wide.
 
     Returns slope away from the seam, slope along it, share of the base colour left, and share of
     the sample covered by thread.

@@ -15,8 +15,8 @@ class Mesh(NamedTuple):
     """The drawn surface: ``vertices, normals, warp`` (n, 3), ``uv`` (n, 2), ``faces`` (m, 3).
 
     ``uv`` [m] lie in the flat panel, the first along the warp, whose unit direction is ``warp``;
-    ``panel`` (m,) picks the material; ``seam`` (n, 2) [m]: distance from the seam and length along
-    it, infinite elsewhere.
+    ``panel`` (m,) picks the material; ``seam`` (n, 3): distance from the seam and length along it
+    [m], infinite elsewhere, and rows of stitches beside it.
     """
 
     vertices: npt.NDArray[np.float64]

@@ -87,5 +87,5 @@ def with_foam(mesh: Mesh, foam: Foam, panel: int, *, cover: int) -> Mesh:
         np.vstack([mesh.uv, np.zeros((k, 2))]),
         np.vstack([mesh.faces, n + np.arange(k).reshape(-1, 3)]),
         np.concatenate([mesh.panel, np.full(len(faces), panel)]),
-        np.vstack([mesh.seam, np.full((k, 2), np.inf)]),
+        np.vstack([mesh.seam, np.full((k, 3), np.inf)]),
     )

@@ -27,23 +27,29 @@ class SewnEdges:
     ----------
     start, end : (s,) int64 vertices; panel : (s,) int64; arc : (s,) float64 [m]
         ``arc`` is the length run along the outline up to ``start``, in the flat panel.
+    side : (s,) int64     twice the number of the seam, and 1 more on its side b
     """
 
     start: IntArray
     end: IntArray
     panel: IntArray
     arc: FloatArray
+    side: IntArray
 
     def __len__(self) -> int:
         return len(self.start)
 
 
-# Share of white in a thread that has the panel's own colour.
-_LIGHTER = 0.06
+# Share of white in a thread that has the panel's own colour: of an even one, and of one with plies,
+# whose valleys are darker.
+_LIGHTER, _LIGHTER_PLIED = 0.06, 0.10
 
 
-def pack_thread(thread: Thread) -> stitch.Thread:
-    """Top stitch as the kernels take it."""
+def pack_thread(thread: Thread, *, built: bool = True, rows: int = 1) -> stitch.Thread:
+    """Top stitch as the kernels take it.
+
+    ``built``: whether seams are drawn as they are built; ``rows``: most that a seam has.
+    """
     own = thread.colour is not None
     red, green, blue = np.ones(3) if thread.colour is None else thread.colour
     return stitch.Thread(
@@ -52,7 +58,9 @@ def pack_thread(thread: Thread) -> stitch.Thread:
         thread.length,
         thread.width,
         (float(red), float(green), float(blue)),
-        1.0 if own else _LIGHTER,
+        1.0 if own else _LIGHTER_PLIED if built else _LIGHTER,
+        thread.gauge if built and rows > 1 else 0.0,
+        built,
     )
 
 
@@ -62,10 +70,11 @@ def sewn_edges(cover: Cover, refined: Refined, uv: FloatArray) -> SewnEdges:
     key = np.array([n, 1])
     panel_of = np.zeros(len(cover.rest), dtype=np.int64)
     panel_of[cover.faces] = cover.panel[:, None]
-    edges = np.zeros((0, 2), dtype=np.int64)
+    edges, side = np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int64)
     if cover.stitchings:
         edges = boundary_edges(np.array(cover.faces))
-        edges = edges[_is_sewn(cover, edges)]
+        side = _sewn_side(cover, edges)
+        edges, side = edges[side >= 0], side[side >= 0]
     panel = panel_of[edges[:, 0]]
     first = len(cover.rest)
     for ends in refined.parents:
@@ -77,9 +86,9 @@ def sewn_edges(cover: Cover, refined: Refined, uv: FloatArray) -> SewnEdges:
         edges = np.concatenate(
             [np.column_stack([edges[:, 0], middle]), np.column_stack([middle, edges[:, 1]])]
         )
-        panel = np.concatenate([panel, panel])
+        panel, side = np.concatenate([panel, panel]), np.concatenate([side, side])
     length = np.linalg.norm(uv[edges[:, 1]] - uv[edges[:, 0]], axis=1)
-    return SewnEdges(edges[:, 0], edges[:, 1], panel, _arcs(edges, length))
+    return SewnEdges(edges[:, 0], edges[:, 1], panel, _arcs(edges, length), side)
 
 
 def close(x: FloatArray, edges: SewnEdges) -> FloatArray:
@@ -120,12 +129,18 @@ def turned_in(
     return x[v] + _ALLOWANCE * inward, faces, v
 
 
-def coordinates(uv: FloatArray, panel_of: IntArray, edges: SewnEdges) -> FloatArray:
-    """Distance from the panel's nearest seam and length along it, (n, 2) [m], in the flat panel.
+def coordinates(
+    uv: FloatArray, panel_of: IntArray, edges: SewnEdges, rows: FloatArray
+) -> FloatArray:
+    """Distance from the panel's nearest seam, length along it, and rows of stitches there, (n, 3).
 
-    The distance is infinite beyond 14 mm.
+    Both [m], in the flat panel. The distance is infinite beyond 14 mm.
+
+    Parameters
+    ----------
+    rows : (2 k,) of both sides of each seam
     """
-    out = np.full((len(uv), 2), np.inf)
+    out = np.full((len(uv), 3), np.inf)
     for panel in np.unique(edges.panel):
         own = edges.panel == panel
         v = np.flatnonzero(panel_of == panel)
@@ -134,19 +149,20 @@ def coordinates(uv: FloatArray, panel_of: IntArray, edges: SewnEdges) -> FloatAr
         length = np.linalg.norm(b - a, axis=1)
         reached = distance < _REACH
         arc = edges.arc[own][near] + t * length[near]
-        out[v[reached]] = np.column_stack([distance, arc])[reached]
+        there = rows[edges.side[own][near]]
+        out[v[reached]] = np.column_stack([distance, arc, there])[reached]
     return out
 
 
-def _is_sewn(cover: Cover, edges: IntArray) -> np.ndarray:
-    """Whether both ends of each boundary edge belong to the same stitching."""
-    sewn = np.zeros(len(edges), dtype=bool)
-    for stitching in cover.stitchings:
-        for side in (stitching.a, stitching.b):
+def _sewn_side(cover: Cover, edges: IntArray) -> IntArray:
+    """Which side of which stitching both ends of each boundary edge belong to; -1 for none."""
+    out = np.full(len(edges), -1)
+    for k, stitching in enumerate(cover.stitchings):
+        for which, side in enumerate((stitching.a, stitching.b)):
             held = np.zeros(len(cover.rest), dtype=bool)
             held[side.vertices[side.weights > 0]] = True
-            sewn |= held[edges].all(axis=1)
-    return sewn
+            out[held[edges].all(axis=1)] = 2 * k + which
+    return out
 
 
 def _arcs(edges: IntArray, length: FloatArray) -> FloatArray:

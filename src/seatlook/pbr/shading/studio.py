@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 from collections import OrderedDict
 from collections.abc import Hashable
-from dataclasses import replace
 from itertools import pairwise
 from types import MappingProxyType
 
@@ -32,6 +31,7 @@ from seatlook.pbr.light.rig import lux_at_seat, pack_lights, white_card, white_o
 from seatlook.pbr.light.windows import with_windows
 from seatlook.pbr.picture import Image
 from seatlook.pbr.quality import Quality, quality_named, quality_within
+from seatlook.pbr.shading.allowance import sides_of
 from seatlook.pbr.shading.backdrop import backdrop
 from seatlook.pbr.shading.eye import eye_of
 from seatlook.pbr.shading.indirect import IndirectLight, camera_key
@@ -51,7 +51,8 @@ class Studio:
     are those of another shape of the same cover; outlines and shadows stay. With ``like``, the
     studio of another shape of the same cover, what does not depend on the shape is taken from that;
     with ``seen``, one whose vertices lie on the same rays of the only camera that is used, so are
-    faces seen. ``surroundings``: name of what is around the seat.
+    faces seen. ``surroundings``: name of what is around the seat. ``built``: whether seams are
+    drawn as they are built, or all as grooves with one row of stitches, as for a score.
 
     Raises
     ------
@@ -69,11 +70,13 @@ class Studio:
         like: Studio | None = None,
         seen: Studio | None = None,
         surroundings: str = "plain",
+        built: bool = True,
     ) -> None:
         around = surroundings_named(surroundings)
         offscreen_backend()
         self.solution = solution
-        self.thread = pack_thread(thread or solution.cover.thread)
+        rows = int(sides_of(solution.cover).rows.max(initial=0))
+        self.thread = pack_thread(thread or solution.cover.thread, built=built, rows=rows)
         self.surroundings, self._around = surroundings, around
         self._seen, self._like = seen, seen or like
         if self._like and self._like.solution.cover is not solution.cover:
@@ -83,10 +86,10 @@ class Studio:
         if self._like and self._like.surroundings != surroundings:
             raise InputError.single("surroundings", got=surroundings, expected="those of like")
         first = self._like.surface if self._like else None
-        self.surface: Surface = drawn_surface(solution, around, like=first)
+        self.surface: Surface = drawn_surface(solution, around, like=first, built=built)
         if shading is not None:
-            mesh = _with_normals(self.surface.mesh, drawn_surface(shading, around).mesh)
-            self.surface = replace(self.surface, mesh=mesh)
+            other = drawn_surface(shading, around, built=built)
+            self.surface = self.surface.shaded_as(other)
         self._cache = Cache()
 
     # Maps need neither: they are made for the first picture.
@@ -357,26 +360,18 @@ def render(
     )
 
 
-_studios: OrderedDict[tuple[int, str], Studio] = OrderedDict()
+_studios: OrderedDict[tuple[int, str, bool], Studio] = OrderedDict()
 
 
-def studio(solution: Solution, surroundings: str = "plain") -> Studio:
+def studio(solution: Solution, surroundings: str = "plain", *, built: bool = True) -> Studio:
     """Return the studio of a solution, making it where it is not among the last two."""
-    key = (id(solution), surroundings)
+    key = (id(solution), surroundings, built)
     if key not in _studios:
-        _studios[key] = Studio(solution, surroundings=surroundings)
+        _studios[key] = Studio(solution, surroundings=surroundings, built=built)
         if len(_studios) > 2:
             _studios.popitem(last=False)
     _studios.move_to_end(key)
     return _studios[key]
-
-
-def _with_normals(mesh: surface.Mesh, other: surface.Mesh) -> surface.Mesh:
-    if not np.array_equal(mesh.faces, other.faces):
-        raise InputError.single(
-            "shading", got="another cover", expected="another shape of the same cover"
-        )
-    return mesh._replace(normals=other.normals)
 
 
 def _check(

@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import sparse
 
-from seatlook.errors import RenderError
+from seatlook.errors import InputError, RenderError
 from seatlook.model import Cover, FloatArray, IntArray, Solution, Surroundings
 from seatlook.pbr.kernels.surface import Mesh
 from seatlook.pbr.shading import seam
+from seatlook.pbr.shading.allowance import heights, sides_of
 from seatlook.pbr.shading.foam import with_foam
 from seatlook.pbr.shading.ground import Ground, ground_of
 from seatlook.pbr.shading.subdivision import Refined, boundary_edges, sharp_corners, subdivide
@@ -32,6 +33,7 @@ class Surface:
     opaque : int          how many faces stop light: of the cover, of what is around it, and of the
         allowance turned in
     ground : Ground       what is around the seat, after the panels; or None
+    lift : (n,) float64 or None   [m] by which allowances below the seams lift the cover
     coarse_faces : (m, 3) the solver's faces
     element_size : float  [m] of the solver's faces
     """
@@ -44,6 +46,7 @@ class Surface:
     coarse_faces: IntArray
     element_size: float
     ground: Ground | None = None
+    lift: FloatArray | None = None
 
     @property
     def gathering(self) -> int:
@@ -68,6 +71,20 @@ class Surface:
         """How many of the vertices are the solver's; they come first."""
         return len(self.refined.points) - sum(map(len, self.refined.parents))
 
+    def shaded_as(self, other: Surface) -> Surface:
+        """The surface with the normals of another shape of the same cover.
+
+        Raises
+        ------
+        InputError
+            It is of another cover.
+        """
+        if not np.array_equal(self.mesh.faces, other.mesh.faces):
+            raise InputError.single(
+                "shading", got="another cover", expected="another shape of the same cover"
+            )
+        return replace(self, mesh=self.mesh._replace(normals=other.mesh.normals))
+
     @property
     def cover_mesh(self) -> Mesh:
         """Only the cover; foam that it compresses is not in the way of light."""
@@ -76,7 +93,11 @@ class Surface:
 
 
 def drawn_surface(
-    solution: Solution, surroundings: Surroundings | None = None, *, like: Surface | None = None
+    solution: Solution,
+    surroundings: Surroundings | None = None,
+    *,
+    like: Surface | None = None,
+    built: bool = True,
 ) -> Surface:
     """Refine the solved cover until its elements do not show, add what is around it and the foam.
 
@@ -84,6 +105,7 @@ def drawn_surface(
     ----------
     like : of the same cover in another shape; the foam is as that has pressed it, and what does
         not depend on the shape is shared, and so is what is around the seat
+    built : whether seams are drawn as they are built: with allowances, by their kinds
 
     Raises
     ------
@@ -105,16 +127,7 @@ def drawn_surface(
     x = seam.close(refined.points[:, :3], edges)
     if like is not None:
         return _moved(like, x, edges)
-    panel = np.repeat(cover.panel, 4**levels)
-    mesh = Mesh(
-        x,
-        vertex_normals(x, refined.faces),
-        _warp(x, uv, refined.faces),
-        uv,
-        refined.faces,
-        panel,
-        seam.coordinates(uv, _panel_of_vertices(refined.faces, panel, len(x)), edges),
-    )
+    mesh, lift = _sewn_mesh(cover, refined, x, edges, built=built)
     n, m, ground = len(x), len(refined.faces), None
     if surroundings is not None:
         ground = _ground(mesh, edges, cover)
@@ -125,12 +138,30 @@ def drawn_surface(
     if cover.foam is not None:
         mesh = with_foam(mesh, cover.foam, len(cover.panel_names), cover=n)
     coarse = np.array(cover.faces)
-    return Surface(mesh, refined, n, m, k, coarse, cover.element_size, ground)
+    return Surface(mesh, refined, n, m, k, coarse, cover.element_size, ground, lift)
+
+
+def _sewn_mesh(
+    cover: Cover, refined: Refined, x: FloatArray, edges: seam.SewnEdges, *, built: bool
+) -> tuple[Mesh, FloatArray | None]:
+    """Mesh of the panels with its vertices at x (n, 3), lifted by allowances if ``built``."""
+    uv = np.ascontiguousarray(refined.points[:, 3:])
+    panel = np.repeat(cover.panel, len(refined.faces) // len(cover.faces))
+    panel_of = _panel_of_vertices(refined.faces, panel, len(x))
+    rows = sides_of(cover).rows if built else np.ones(2 * len(cover.stitchings))
+    beside, lift = seam.coordinates(uv, panel_of, edges, rows), None
+    if built and len(edges):
+        lift = heights(cover, uv, panel_of, beside[:, 0], edges)
+        x = _lifted(x, refined.faces, lift)
+    normals, warp = vertex_normals(x, refined.faces), _warp(x, uv, refined.faces)
+    return Mesh(x, normals, warp, uv, refined.faces, panel, beside), lift
 
 
 def _moved(like: Surface, x: FloatArray, edges: seam.SewnEdges) -> Surface:
     """The surface of the same cover with its refined vertices at ``x`` (n, 3)."""
     old, faces = like.mesh, like.refined.faces
+    if like.lift is not None:
+        x = _lifted(x, faces, like.lift)
     around = slice(len(x), like.gathering)
     points, normals = [x, old.vertices[around]], [vertex_normals(x, faces), old.normals[around]]
     warp = [_warp(x, old.uv[: len(x)], faces), old.warp[around]]
@@ -146,6 +177,10 @@ def _moved(like: Surface, x: FloatArray, edges: seam.SewnEdges) -> Surface:
         warp=np.vstack([*warp, old.warp[rest]]),
     )
     return replace(like, mesh=mesh)
+
+
+def _lifted(x: FloatArray, faces: np.ndarray, lift: FloatArray) -> FloatArray:
+    return x + lift[:, None] * vertex_normals(x, faces)
 
 
 def vertex_normals(x: FloatArray, faces: np.ndarray) -> FloatArray:
@@ -206,7 +241,7 @@ def _with_ground(mesh: Mesh, ground: Ground, panel: int) -> Mesh:
         np.vstack([mesh.uv, np.zeros((g, 2))]),
         np.vstack([mesh.faces, len(mesh.vertices) + ground.faces]),
         np.concatenate([mesh.panel, own]),
-        np.vstack([mesh.seam, np.full((g, 2), np.inf)]),
+        np.vstack([mesh.seam, np.full((g, 3), np.inf)]),
     )
 
 
@@ -220,7 +255,7 @@ def _with_allowance(mesh: Mesh, edges: seam.SewnEdges) -> Mesh:
         np.vstack([mesh.uv, mesh.uv[origin]]),
         np.vstack([mesh.faces, faces]),
         np.concatenate([mesh.panel, owner]),
-        np.vstack([mesh.seam, np.column_stack([np.zeros(len(points)), mesh.seam[origin, 1]])]),
+        np.vstack([mesh.seam, np.column_stack([np.zeros(len(points)), mesh.seam[origin, 1:]])]),
     )
 
 

@@ -113,7 +113,8 @@ def add_geometry(stage: Studio, buffers: Buffers) -> tuple[Triangles, dict[str, 
     near = np.isfinite(seam).all(axis=1) & (seam[:, 0] < _SEAM_REACH)
     most = float(seam[near, 1].max()) if near.any() else 1.0
     seams = np.full(seam.shape, _NONE, dtype=np.uint16)
-    seams[near] = np.rint(seam[near] / [_SEAM_REACH, max(most, 1e-6)] * (_NONE - 1))
+    scale = np.array([_SEAM_REACH, max(most, 1e-6), _NONE - 1.0])  # rows of stitches are whole
+    seams[near] = np.rint(seam[near] / scale * (_NONE - 1))
     buffers.add("position", place)
     buffers.add("normal", octahedral(mesh.normals[used]))
     buffers.add("pattern", pattern)

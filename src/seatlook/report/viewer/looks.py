@@ -117,4 +117,5 @@ def _thread(thread: Thread) -> dict[str, Any]:
         "width": thread.width,
         "colour": list(thread.colour),
         "own": thread.own,
+        "gauge": thread.gauge,
     }

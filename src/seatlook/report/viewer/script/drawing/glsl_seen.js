@@ -21,7 +21,7 @@ export const VERTEX = `
 layout(location = 0) in vec3 inPosition;
 layout(location = 1) in vec2 inNormal;
 layout(location = 2) in vec2 inPattern;
-layout(location = 3) in vec2 inSeam;
+layout(location = 3) in vec3 inSeam;
 layout(location = 4) in vec3 inWarp;
 layout(location = 5) in float inOpen;
 uniform mat4 uCamera;
@@ -31,7 +31,7 @@ uniform vec2 uSeamRange;
 out vec3 vPosition;
 out vec3 vNormal;
 out vec2 vPattern;
-out vec2 vSeam;
+out vec3 vSeam;
 out vec3 vWarp;
 out float vOpen;
 ${UNFOLD}
@@ -40,7 +40,7 @@ void main() {
   vNormal = unfolded(inNormal);
   vPattern = inPattern / 65535.0;
   // Beyond the reach nothing is known: far away, and so is what lies between.
-  vSeam = inSeam.x > 65534.5 ? vec2(1e3, 0.0) : uSeamRange * inSeam / 65534.0;
+  vSeam = inSeam.x > 65534.5 ? vec3(1e3, 0.0, 0.0) : vec3(uSeamRange * inSeam.xy / 65534.0, inSeam.z);
   vWarp = inWarp;
   vOpen = inOpen;
   gl_Position = uCamera * vec4(vPosition, 1.0);
@@ -57,13 +57,13 @@ void main() { gl_Position = uCamera * vec4(uLow + uStep * inPosition, 1.0); }
 
 export const NOTHING = "void main() {}\n";
 
-// oPlace: normal, plane of the triangle, pattern, seam; oSides: warp with the row of the material
+// oPlace: normal, plane of the triangle, pattern, seam with its rows; oSides: warp with the row of the material
 // plus one, slopes of the distance from the seam and of the length along it, depth with open share.
 export const SEE = `
 in vec3 vPosition;
 in vec3 vNormal;
 in vec2 vPattern;
-in vec2 vSeam;
+in vec3 vSeam;
 in vec3 vWarp;
 in float vOpen;
 uniform vec3 uEye;
@@ -102,10 +102,13 @@ void main() {
   vec3 onward = gradient(px, py, plane, dFdx(vSeam.y), dFdy(vSeam.y));
   // Where the nearest seam changes, or is no longer known, values jump: no stitch crosses that.
   bool even = dot(onward, onward) < 4.0 && dot(away, away) < 4.0;
-  vec2 seam = even ? clamp(vSeam / uSeamRange, 0.0, 1.0) : vec2(1.0, 0.0);
+  vec2 seam = even ? clamp(vSeam.xy / uSeamRange, 0.0, 1.0) : vec2(1.0, 0.0);
+  // Rows of stitches end where those of the corners differ.
+  uint rows = fwidth(vSeam.z) > 1e-3 ? 0u : min(uint(vSeam.z + 0.5), 2u);
+  uint beside = seam.x >= 1.0 ? 65535u : rows << 14 | uint(seam.x * 16382.0 + 0.5);
   uint depth = min(uint(gl_FragCoord.z * 16777215.0 + 0.5), 16777215u);
   uvec2 weave = uvec2(2047.5 + 2047.0 * folded(warp));
-  oPlace = uvec4(packSnorm2x16(folded(n)), packSnorm2x16(folded(plane)), packUnorm2x16(vPattern), packUnorm2x16(seam));
+  oPlace = uvec4(packSnorm2x16(folded(n)), packSnorm2x16(folded(plane)), packUnorm2x16(vPattern), uint(seam.y * 65535.0 + 0.5) << 16 | beside);
   oSides = uvec4(
     weave.x << 20 | weave.y << 8 | uint(uRow + 1), packHalf2x16(vec2(dot(away, first), dot(away, second))),
     packHalf2x16(vec2(dot(onward, first), dot(onward, second))), depth << 8 | uint(clamp(vOpen, 0.0, 1.0) * 255.0 + 0.5));
@@ -128,7 +131,7 @@ uniform vec4 uPatternRange;
 uniform vec2 uSeamRange;
 ${UNFOLD}
 struct Seen {
-  vec3 position; vec3 normal; vec3 plane; vec3 warp; vec2 pattern; vec2 seam; vec3 away; vec3 onward; float open;
+  vec3 position; vec3 normal; vec3 plane; vec3 warp; vec2 pattern; vec3 seam; vec3 away; vec3 onward; float open;
 };
 
 // Row of the material plus one, 0 beside the seat.
@@ -146,7 +149,9 @@ Seen seenAt() {
   seen.plane = unfolded(unpackSnorm2x16(place.y));
   seen.warp = unfolded(vec2(uvec2(sides.x >> 20, sides.x >> 8 & 4095u)) / 2047.0 - 1.0);
   seen.pattern = uPatternRange.xy + 65535.0 * uPatternRange.zw * unpackUnorm2x16(place.z);
-  seen.seam = place.w % 65536u == 65535u ? vec2(1e3, 0.0) : uSeamRange * unpackUnorm2x16(place.w);
+  uint beside = place.w & 65535u;
+  vec2 at_seam = uSeamRange * vec2(float(beside & 16383u) / 16382.0, float(place.w >> 16) / 65535.0);
+  seen.seam = beside == 65535u ? vec3(1e3, 0.0, 0.0) : vec3(at_seam, float(beside >> 14));
   vec3 first, second;
   sidesOf(seen.plane, seen.warp, first, second);
   vec2 away = unpackHalf2x16(sides.y), onward = unpackHalf2x16(sides.z);

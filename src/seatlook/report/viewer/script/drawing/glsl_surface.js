@@ -5,7 +5,7 @@ import { SEEN } from "./glsl_seen.js";
 
 export const MOST_LIGHTS = 8;
 
-// Grain, seams and holes, see pbr/kernels/grain.py, stitch.py and detail.py.
+// Grain, seams and holes, see pbr/kernels/grain.py, sewn.py and detail.py.
 const DETAIL = `
 uniform float uPixel;
 uniform int uTexture;
@@ -15,13 +15,17 @@ uniform sampler2D uSlopes;
 uniform vec2 uHoles;
 uniform vec4 uThread;
 uniform vec4 uThreadColour;
+uniform float uGauge;
 uniform sampler2D uPhoto;
 uniform vec4 uPhotoSize;
 
 const int SUEDE = 1;
 const int WEAVE = 2;
-const float ROLL_DEPTH = 0.0008, ROLL_WIDTH = 0.0011, PRESS_DEPTH = 0.00022, PRESS_WIDTH = 0.0012;
-const float HOLE = 0.00045;
+const float ROLL_DEPTH = 0.0008, ROLL_WIDTH = 0.0011, PRESS_DEPTH = 0.0002, PRESS_WIDTH = 0.0012;
+const float PUCKER_HEIGHT = 0.00016, PUCKER_WIDTH = 0.0019, UNEVEN = 0.35;
+const float DIMPLE_DEPTH = 0.00016, DIMPLE_WIDTH = 0.0006, HOLE = 0.00025;
+const float PLY_LENGTH = 0.0011, PLY_ACROSS = 1.6, PLY_HEIGHT = 0.00006, PLY_DARK = 0.4;
+const float STEEPEST = 0.9, BLUR = 2.0;
 
 struct Detail { vec3 n; vec3 colour; float roughness; float left; float wider; };
 
@@ -62,37 +66,80 @@ float holes(vec2 uv, float width) {
   return mix(inside, mean, blur);
 }
 
-// Groove and top stitch: slopes away from and along the seam, share of the colour, thread.
-vec4 seamRelief(float distance, float arc, float width) {
-  float away = ROLL_DEPTH / ROLL_WIDTH * exp(-distance / ROLL_WIDTH);
-  float share = 1.0 - 0.65 * exp(-distance / 0.0006);
-  float thread = uThread.w;
-  if (thread == 0.0) return vec4(away, 0.0, share, 0.0);
-  float x = (distance - uThread.x) / PRESS_WIDTH;
-  away += PRESS_DEPTH / PRESS_WIDTH * x * exp(-0.5 * x * x);
-  float y = arc / uThread.y;
-  y = (y - floor(y) - 0.5) * uThread.y;
-  x = distance - uThread.x;
-  float half_width = 0.5 * thread;
-  float over = max(0.0, abs(y) - (0.5 * uThread.z - half_width));
-  float r = sqrt(x * x + over * over);
-  float covered = clamp((half_width - r) / max(width, 1e-6) + 0.5, 0.0, 1.0);
-  if (covered > 0.0) {
-    float q = min(r / half_width, 0.95);
-    float steep = covered * q / sqrt(1.0 - q * q);
-    away = (1.0 - covered) * away - steep * x / max(r, 1e-9);
-    return vec4(away, -steep * over * sign(y) / max(r, 1e-9), 1.0, covered);
+float overlap(float x, float h, float width) {
+  return max(0.0, min(x + 0.5 * width, h) - max(x - 0.5 * width, -h)) / width;
+}
+
+// Share of a normal distribution below t; clamped, since tanh overflows on some cards.
+float below(float t) {
+  t = clamp(t, -6.0, 6.0);
+  return 0.5 + 0.5 * tanh(0.7978846 * t * (1.0 + 0.044715 * t * t));
+}
+
+struct Sewn { float away; float onward; float left; float covered; float bright; };
+
+// Relief beside a seam: slopes away from and along it, share of the colour, thread and its light.
+Sewn sewnRelief(float rows, float distance, float arc, float width) {
+  width = max(width, 1e-6);
+  Sewn s = Sewn(ROLL_DEPTH / ROLL_WIDTH * exp(-distance / ROLL_WIDTH), 0.0,
+    1.0 - 0.65 * exp(-distance / 0.0006), 0.0, 1.0);
+  float pitch = uThread.y, h = 0.5 * uThread.w;
+  if (rows < 0.5 || h == 0.0) return s;
+  bool second = rows > 1.5 && distance > uThread.x + 0.5 * uGauge;
+  float x = distance - uThread.x - (second ? uGauge : 0.0);
+  float number = floor(arc / pitch);
+  float y = arc - (number + 0.5) * pitch;
+  float t = x / PRESS_WIDTH;
+  s.away += PRESS_DEPTH / PRESS_WIDTH * t * exp(-0.5 * t * t);
+  // Stitches are regular and would beat with the pixels: along the row they are blurred.
+  float blur = BLUR * width, turn = 2.0 * PI / pitch;
+  float seen = exp(-0.5 * turn * turn * blur * blur);
+  float high = seen * PUCKER_HEIGHT
+    * (1.0 + UNEVEN * (2.0 * even(uint(number), second ? 1u : 0u, 5u) - 1.0));
+  t = x / PUCKER_WIDTH;
+  float bell = exp(-0.5 * t * t);
+  s.away -= 0.5 * high * (1.0 + cos(turn * y)) * bell * t / PUCKER_WIDTH;
+  s.onward -= 0.5 * high * turn * sin(turn * y) * bell;
+  float wide = DIMPLE_WIDTH * DIMPLE_WIDTH + blur * blur, hole = HOLE * HOLE + blur * blur;
+  float deep = DIMPLE_DEPTH * DIMPLE_WIDTH * DIMPLE_WIDTH / wide, dark = 0.75 * HOLE * HOLE / hole;
+  for (int k = -1; k <= 1; k += 2) {
+    float z = y - 0.5 * float(k) * pitch, r2 = x * x + z * z;
+    float dimple = deep * exp(-0.5 * r2 / wide);
+    s.away += dimple * x / wide;
+    s.onward += dimple * z / wide;
+    s.left *= 1.0 - dark * exp(-0.5 * r2 / hole);
   }
-  float hole = sqrt(x * x + pow(abs(y) - 0.5 * uThread.y, 2.0));
-  share *= 1.0 - 0.75 * clamp((HOLE - hole) / max(width, 1e-6) + 0.5, 0.0, 1.0);
-  return vec4(away, 0.0, share, 0.0);
+  float fine = exp(-2.5 * width * width / (h * h));
+  float over = max(0.0, abs(y) - (0.5 * uThread.z - h));
+  float across = h - fine * (h - sqrt(max(0.1 * h * h, h * h - over * over)));
+  float far = clamp(2.0 * width / pitch - 0.5, 0.0, 1.0), onto = 0.0;
+  for (int k = -1; k <= 1; ++k) {
+    float there = y - float(k) * pitch;
+    onto += below((there + 0.5 * uThread.z) / blur) - below((there - 0.5 * uThread.z) / blur);
+  }
+  s.covered = overlap(x, across, width) * mix(onto, uThread.z / pitch, far);
+  if (s.covered < 1e-6) return s;
+  float r = min(1.0, sqrt(x * x + over * over) / h);
+  float steep = fine * STEEPEST * r / sqrt(1.0 - 0.75 * r * r), size = max(r * h, 1e-9);
+  float ends = exp(-0.5 * PI * PI * blur * blur / (uThread.w * uThread.w));
+  vec2 slope = -steep * vec2(x, ends * over * sign(y)) / size;
+  float turn_of_ply = 2.0 * PI * blur / PLY_LENGTH;
+  seen = exp(-0.5 * turn_of_ply * turn_of_ply);
+  float phase = 2.0 * PI * (y / PLY_LENGTH + PLY_ACROSS * x / uThread.w);
+  slope -= PI * seen * PLY_HEIGHT * sin(phase) * vec2(PLY_ACROSS / uThread.w, 1.0 / PLY_LENGTH);
+  float valley = 0.5 - 0.5 * cos(phase);
+  s.bright = 1.0 - PLY_DARK * (seen * valley * valley + 0.375 * (1.0 - seen));
+  s.away = mix(s.away, slope.x, s.covered);
+  s.onward = mix(s.onward, slope.y, s.covered);
+  s.left = mix(s.left, s.bright, s.covered);
+  return s;
 }
 
 Detail detailOf(Material m, Seen seen, vec3 n, vec3 v, vec3 warp, vec3 weft, float reach) {
   Detail d = Detail(n, m.albedo, m.roughness, 1.0, 0.0);
   float cosine = max(0.05, dot(n, v));
   float width = reach * uPixel / sqrt(cosine);
-  float share = 1.0, own = 0.0;
+  float share = 1.0, own = 0.0, bright = 1.0;
   if (PHOTO && uPhotoSize.x > 0.0) {
     float texel = sqrt(uPhotoSize.x / uPhotoSize.z * uPhotoSize.y / uPhotoSize.w);
     d.colour = textureLod(uPhoto, seen.pattern / uPhotoSize.xy, max(0.0, log2(0.5 * width / texel))).rgb;
@@ -115,14 +162,16 @@ Detail detailOf(Material m, Seen seen, vec3 n, vec3 v, vec3 warp, vec3 weft, flo
     }
   }
   if (HOLES && uHoles.y > 0.0) d.left = 1.0 - holes(seen.pattern, width);
-  if (SEWN && seen.seam.x < uThread.x + 6.0 * PRESS_WIDTH + uThread.w) {
-    vec4 seam = seamRelief(seen.seam.x, seen.seam.y, reach * uPixel / sqrt(max(0.05, abs(dot(seen.plane, v)))));
-    d.n = normalize(d.n - seam.x * seen.away - seam.y * seen.onward);
-    share *= seam.z;
-    own = seam.w * uThreadColour.a;
-    d.roughness += seam.w * max(0.0, 0.6 - d.roughness);
+  if (SEWN && seen.seam.x < max(uThread.x + uGauge + 0.0057, 0.006)) {
+    float sample_width = reach * uPixel / sqrt(max(0.05, abs(dot(seen.plane, v))));
+    Sewn seam = sewnRelief(seen.seam.z, seen.seam.x, seen.seam.y, sample_width);
+    d.n = normalize(d.n - seam.away * seen.away - seam.onward * seen.onward);
+    share *= seam.left;
+    own = seam.covered * uThreadColour.a;
+    bright = seam.bright;
+    d.roughness += seam.covered * max(0.0, 0.6 - d.roughness);
   }
-  d.colour = d.colour * (share * (1.0 - own)) + own * uThreadColour.rgb;
+  d.colour = d.colour * (share * (1.0 - own)) + own * bright * uThreadColour.rgb;
   return d;
 }
 `;

@@ -52,7 +52,7 @@ export class Mesh {
     this.attribute(0, steps, 3, false);
     this.attribute(1, array("normal"), 2, true);
     this.attribute(2, this.pattern, 2, false);
-    this.attribute(3, array("seam"), 2, false);
+    this.attribute(3, array("seam"), 3, false);
     this.attribute(4, warpOf(this.x, this.pattern, this.faces), 3, true);
     this.open = this.attribute(5, array("open"), 1, true);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());

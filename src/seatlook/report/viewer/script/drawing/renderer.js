@@ -240,7 +240,7 @@ export class Renderer {
     const common = {
       ...view, uWhite: 1 / (1.2 * Math.pow(2, shown.ev100)), uSpread: 1 / Math.sqrt(count), uPixel: pixel / Math.sqrt(count),
       uSky: shown.rig.sky, uThread: [thread.offset, thread.pitch, thread.length, thread.width],
-      uThreadColour: [...thread.colour, thread.own],
+      uThreadColour: [...thread.colour, thread.own], uGauge: thread.gauge,
     };
     const prepared = new Set(), foam = shown.look[content.parts.length - 1];
     shown.materials.forEach((material, row) => {
