@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+import shapely
+import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from seatlook import mesh
 from seatlook.errors import InputError
@@ -208,3 +212,33 @@ def test_over_creases_a_line_is_drawn_or_refused():
             refused.add(error.problems[0].expected)
     assert 20 < drawn < 60
     assert refused == {"a line that stays on the surface"}
+
+
+def concave_block(seed):
+    """A block with a concave sharp edge, its faces of all shapes; a line drawn beside the edges."""
+    outline = [(-0.3, -0.2), (0.3, -0.2), (0.3, 0.05), (0.05, 0.05), (0.05, 0.2), (-0.3, 0.2)]
+    block = trimesh.creation.extrude_polygon(shapely.Polygon(outline), 0.1)
+    block = trimesh.Trimesh(*trimesh.remesh.subdivide_to_size(block.vertices, block.faces, 0.05))
+    block.merge_vertices()
+    rng = np.random.default_rng(seed)
+    ring = np.array(shapely.Polygon(outline).exterior.segmentize(0.04).coords)[:-1]
+    line = np.column_stack([ring, np.full(len(ring), 0.1)]) + rng.normal(0, 5e-4, (len(ring), 3))
+    return np.array(block.vertices), np.array(block.faces), np.vstack([line, line[:1]])
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_line_beside_sharp_edges_parts_a_block_in_two(seed):
+    vertices, faces, line = concave_block(seed)
+    drawn = imprint(vertices, faces, {"a": line})
+    rows = mesh.inner_sides(drawn.faces)
+    half = np.sort(drawn.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)[rows[:, 0]], axis=1)
+    link = np.array([tuple(pair) not in drawn.edges for pair in half.tolist()])
+    pairs = rows[link] // 3
+    graph = coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(len(drawn.faces),) * 2)
+    count, part = connected_components(graph, directed=False)
+    assert count == 2
+    areas = np.sort(np.bincount(part, mesh.face_areas(drawn.vertices, drawn.faces)))
+    assert areas[0] == pytest.approx(0.2025, rel=0.02)
+    ends = np.array(list(drawn.edges))
+    length = np.linalg.norm(drawn.vertices[ends[:, 0]] - drawn.vertices[ends[:, 1]], axis=1).sum()
+    assert length < 1.05 * 2.0

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+import shapely
 import trimesh
 from scipy.spatial import cKDTree
 
 from seatlook.errors import InputError
+from seatlook.mesh.mending import cleaning
 from seatlook.mesh.mending.mend import Mending, is_clean, mend_body, mend_sheet
 from seatlook.mesh.mending.skin import Skin
 from support.rough_surfaces import cushion, scan, volume, whole_seat, without
@@ -350,3 +352,21 @@ def test_whatever_comes_is_a_solid_or_refused(seed, choices):
     edges = np.sort(np.stack([skin.faces, np.roll(skin.faces, -1, 1)], 2).reshape(-1, 2), axis=1)
     assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
     assert volume(skin.vertices, skin.faces) > 0
+
+
+def test_flat_faces_beside_flat_faces_are_not_turned_to_and_fro(monkeypatch):
+    """Rows of slivers, as CAD systems leave them along rounded corners."""
+    corners = [(-0.3, -0.25), (0.3, -0.25), (0.3, 0.05), (0.05, 0.05), (0.05, 0.25), (-0.3, 0.25)]
+    outline = shapely.Polygon(corners).buffer(-0.04).buffer(0.08).buffer(-0.04)
+    block = trimesh.creation.extrude_polygon(outline, 0.1)
+    block = trimesh.Trimesh(*trimesh.remesh.subdivide_to_size(block.vertices, block.faces, 0.025))
+    block.merge_vertices()
+    trimesh.smoothing.filter_humphrey(block, iterations=3)
+    skin = Skin(np.array(block.vertices), np.array(block.faces), np.arange(len(block.faces)))
+    flat, rounds, flip = len(cleaning.slivers(skin)), [], cleaning._flip
+    monkeypatch.setattr(cleaning, "_flip", lambda *args: rounds.append(0) or flip(*args))
+    cleaning.mend_slivers(skin)
+    assert flat > 20
+    assert len(rounds) < 10
+    assert len(cleaning.slivers(skin)) < flat / 4
+    assert volume(skin.vertices, skin.faces) == pytest.approx(block.volume, rel=1e-4)

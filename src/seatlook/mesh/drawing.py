@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError
 from seatlook.mesh.closest import closest_places
+from seatlook.mesh.shortest import Stop, place_of, shortest_way
 from seatlook.mesh.surface import boundary_sides
 
 FloatArray = npt.NDArray[np.float64]
@@ -36,7 +37,8 @@ class Drawing:
                 self.faces_at[a].add(f)
         self.first_faces_at = [tuple(numbers) for numbers in self.faces_at]
         side, k = np.divmod(boundary_sides(faces), 3)
-        self.fixed = {*faces[side, k].tolist(), *faces[side, (k + 1) % 3].tolist()}
+        self.border = {*faces[side, k].tolist(), *faces[side, (k + 1) % 3].tolist()}
+        self.fixed = set(self.border)
         self.edges: dict[Edge, str] = {}
         self.count = len(self.faces)
 
@@ -79,16 +81,28 @@ class Drawing:
             step = self._step(path[-1], end, normal)
             # Beside a crease the next plane may lead back; a way crosses no face twice.
             if step is None or step in path or len(path) > len(self.first_faces):
-                x, y, z = 1e3 * self.points[path[-1]]
-                raise InputError.single(
-                    key,
-                    got=f"no way on the surface to the next point from {x:.1f}, {y:.1f}, {z:.1f}",
-                    expected="a line that stays on the surface",
-                    hint="where the surface is strongly bent, points closer together help",
-                )
+                # A way that comes to a border leaves the surface; round a hole is not meant.
+                leaves = path[-1] in self.border and path[-1] != start
+                return self._walked(None if leaves else shortest_way(self, start, end), start, key)
             self.fixed.add(step)
             path.append(step)
         return [*path, end]
+
+    def _walked(self, stops: list[Stop] | None, start: int, key: str) -> list[int]:
+        """Return the vertices of a way through these stops."""
+        if stops is None:
+            x, y, z = 1e3 * self.points[start]
+            raise InputError.single(
+                key,
+                got=f"no way on the surface to the next point from {x:.1f}, {y:.1f}, {z:.1f}",
+                expected="a line that stays on the surface",
+                hint="where the surface is strongly bent, points closer together help",
+            )
+        path = []
+        for a, b, part in stops:
+            place = place_of(self, (a, b, part))
+            path.append(a if a == b else self._split(self.between(a, b), (a, b), place))
+        return path
 
     def _step(self, vertex: int, end: int, normal: FloatArray) -> int | None:
         """Return the next vertex on the way to ``end``, or None where there is no way forward."""
@@ -119,6 +133,8 @@ class Drawing:
         vertex = len(self.points)
         self.points.append(place)
         self.faces_at.append(set())
+        if len(ends) == 2 and len(self.between(*ends)) < 2:
+            self.border.add(vertex)
         for f in tuple(faces):
             corners, source = self.faces.pop(f), self.source.pop(f)
             self.parts[source].discard(f)

@@ -41,10 +41,11 @@ def mend_slivers(skin: Skin, *, asked: bool = False) -> None:
     if not len(flat):
         return
     count, place = len(flat), skin.middle(int(flat[0]))
+    gone: set[int] = set()
     for _ in range(count):
         _collapse(skin, flat)
         flat = slivers(skin)
-        if not len(flat) or not _flip(skin, flat):
+        if not len(flat) or not _flip(skin, flat, gone):
             break
         flat = slivers(skin)
     skin.note("slivers collapsed or flipped", count - len(slivers(skin)), place, asked=asked)
@@ -58,15 +59,19 @@ def _collapse(skin: Skin, flat: IntArray) -> None:
     skin.merge(_groups(pairs[span <= 2 * SLIVER_M], len(skin.vertices)))
 
 
-def _flip(skin: Skin, flat: IntArray) -> bool:
-    """Give the long side of flat faces to the two others; False where none could be."""
-    table = sides(skin.faces)
+def _flip(skin: Skin, flat: IntArray, gone: set[int]) -> bool:
+    """Give the long side of flat faces to the two others; False where none could be.
+
+    A side once given away does not come back: flat faces beside flat ones would be turned to and
+    fro for ever. ``gone`` collects these sides.
+    """
+    table, n = sides(skin.faces), len(skin.vertices)
     lengths = skin.side_lengths()[flat]
     long = 3 * flat + lengths.argmax(axis=1)
     order = np.argsort(table.edge, kind="stable")
     start = np.searchsorted(table.edge[order], table.edge[long])
     touched: set[int] = set()
-    known = {tuple(sorted(pair)) for pair in edges(skin.faces).tolist()}
+    shut = gone | set(_codes(edges(skin.faces), n).tolist())
     for side, first in zip(long.tolist(), start.tolist(), strict=True):
         if table.members[table.edge[side]] != 2:
             continue
@@ -77,11 +82,19 @@ def _flip(skin: Skin, flat: IntArray) -> bool:
             continue
         a, b = skin.faces[f, side % 3], skin.faces[f, (side + 1) % 3]
         tip, far = skin.faces[f, (side + 2) % 3], skin.faces[g, (other + 2) % 3]
-        if tip == far or tuple(sorted((int(tip), int(far)))) in known:
+        before, after = _codes(np.array([[a, b], [tip, far]]), n).tolist()
+        if tip == far or after in shut:
             continue
         skin.faces[f], skin.faces[g] = (a, far, tip), (far, b, tip)
         touched |= {f, g}
+        shut.add(after)
+        gone.add(before)
     return bool(touched)
+
+
+def _codes(pairs: IntArray, n: int) -> IntArray:
+    """Return one number (k,) for each pair (k, 2) of n vertices, in either order."""
+    return np.asarray(pairs.min(axis=1) * n + pairs.max(axis=1))
 
 
 def sew_cracks(skin: Skin) -> None:
