@@ -79,7 +79,7 @@ def test_closed_pieces_and_rings():
     assert degrees(pillow()) == 4 * [180]
     assert degrees(tube()) == [180, 180]
     for pattern in (pillow(), tube(), t_junction()):
-        assert surface(pattern).closed
+        assert surface(pattern).covers()
         assert exchanged(pattern) == ([], [])
 
 
@@ -124,7 +124,7 @@ def demo(tmp_path_factory):
 @pytest.mark.parametrize("shape", ["demo", "box"])
 def test_every_exchange_of_seams_of_one_length_is_found(shape, request):
     pattern = demo_or_box(shape, request)
-    assert surface(pattern).closed
+    assert surface(pattern).covers()
 
     def lengths(seam):
         return [pattern.edge_length(seam.a), sum(map(pattern.edge_length, seam.b))]
@@ -137,7 +137,7 @@ def test_every_exchange_of_seams_of_one_length_is_found(shape, request):
     assert len(pairs) >= 6
     for i, j in pairs:
         wrong = swapped(pattern, i, j)
-        assert not surface(wrong).closed
+        assert not surface(wrong).covers()
         right = {pattern.seams[i].name, pattern.seams[j].name}
         assert right in [{one.name, two.name} for one, two in exchanged(wrong)[0]]
 

@@ -233,3 +233,36 @@ def test_a_bare_panel_is_left_out_and_its_border_is_free():
 def middle_of(surface, panel):
     faces = surface.faces[surface.panel == panel]
     return surface.vertices[faces[len(faces) // 2]].mean(axis=0)
+
+
+def closed_box():
+    surface = box_cushion(base=True)
+    rims = {
+        name: surface.vertices[np.append(loop, loop[0])]
+        for name, part in (("top", 1), ("base", 2))
+        for loop in mesh.boundary_loops(surface.faces[surface.panel == part])
+    }
+    front, rear = (surface.vertices[surface.vertices[:, 1].argsort()[k]] for k in (0, -1))
+    return surface, rims, front, rear
+
+
+def test_both_halves_of_a_ring_have_its_name():
+    surface, rims, front, _ = closed_box()
+    whole = undivided(surface.vertices, surface.faces)
+    names = {"STRIP": front, "LID": middle_of(surface, 1)}
+    with pytest.warns(InputWarning, match="panel STRIP has 2 borders"):
+        cut = cut_along(whole, rims, names=names)
+    assert {"STRIP_1", "STRIP_2", "LID"} < set(cut.panel_names)
+    assert sum(line.startswith("STRIP-CLOSING") for line in cut.seam_lines.values()) > 1
+
+
+def test_each_half_of_a_ring_may_have_a_name_of_its_own():
+    surface, rims, front, rear = closed_box()
+    whole = undivided(surface.vertices, surface.faces)
+    cut = quietly(cut_along, whole, rims, names={"NEAR": front, "FAR": rear})
+    assert {"NEAR", "FAR"} < set(cut.panel_names)
+    beside = front + np.array([0.001, 0.0, 0.0])
+    with pytest.raises(InputError, match=r"panel.AGAIN.point_mm: got a point in the same panel"):
+        quietly(cut_along, whole, rims, names={"NEAR": front, "AGAIN": beside, "FAR": rear})
+    with pytest.raises(InputError, match=r"panel.OFF.point_mm: got one farther away"):
+        quietly(cut_along, whole, rims, names={"OFF": front - [0.0, 0.1, 0.0]})

@@ -354,7 +354,7 @@ def test_whatever_comes_is_a_solid_or_refused(seed, choices):
     assert volume(skin.vertices, skin.faces) > 0
 
 
-def test_flat_faces_beside_flat_faces_are_not_turned_to_and_fro(monkeypatch):
+def test_flat_faces_beside_flat_faces_are_not_turned_back_and_forth(monkeypatch):
     """Rows of slivers, as CAD systems leave them along rounded corners."""
     corners = [(-0.3, -0.25), (0.3, -0.25), (0.3, 0.05), (0.05, 0.05), (0.05, 0.25), (-0.3, 0.25)]
     outline = shapely.Polygon(corners).buffer(-0.04).buffer(0.08).buffer(-0.04)

@@ -42,10 +42,9 @@ class SewnSurface:
     parts: int
     points: tuple[tuple[frozenset[Place], float], ...]
 
-    @property
-    def closed(self) -> bool:
-        """Whether it can be a cover."""
-        return self.handles == 0 and all(angle <= WIDEST_POINT for _, angle in self.points)
+    def covers(self, handles: int = 0) -> bool:
+        """Whether it can be a cover of a body with so many handles."""
+        return self.handles <= handles and all(angle <= WIDEST_POINT for _, angle in self.points)
 
 
 def sewn_surface(pattern: Pattern, seams: Iterable[Seam]) -> SewnSurface:
@@ -91,8 +90,14 @@ def free_borders(pattern: Pattern) -> tuple[tuple[str, ...], ...]:
     return tuple(tuple(name for part in rim for name in part) for rim in found if all(rim))
 
 
-def exchanged(pattern: Pattern) -> tuple[list[tuple[Seam, Seam]], list[tuple[Seam, Seam]]]:
+def exchanged(
+    pattern: Pattern, handles: int = 0
+) -> tuple[list[tuple[Seam, Seam]], list[tuple[Seam, Seam]]]:
     """Pairs of seams, each of which fits the other's partner as well as its own.
+
+    Parameters
+    ----------
+    handles : of the body below, such as 1 of a ring
 
     Returns
     -------
@@ -103,7 +108,8 @@ def exchanged(pattern: Pattern) -> tuple[list[tuple[Seam, Seam]], list[tuple[Sea
     now = sewn_surface(pattern, seams)
     certain: list[tuple[Seam, Seam]] = []
     likely: list[tuple[Seam, Seam]] = []
-    if now.closed and now.parts <= 1:
+    covers = now.covers(handles)
+    if covers and now.parts <= 1:
         return certain, likely
     for one, two in combinations(seams, 2):
         if not alike(pattern, one, two, tolerance=_FIT):
@@ -111,9 +117,9 @@ def exchanged(pattern: Pattern) -> tuple[list[tuple[Seam, Seam]], list[tuple[Sea
         swapped = replace(one, b=two.b), replace(two, b=one.b)
         others = [seam for seam in seams if seam not in (one, two)]
         then = sewn_surface(pattern, [*others, *swapped])
-        if then.closed and not now.closed:
+        if then.covers(handles) and not covers:
             certain.append((one, two))
-        elif then.closed and then.parts < now.parts:
+        elif then.covers(handles) and then.parts < now.parts:
             likely.append((one, two))
     return certain, likely
 

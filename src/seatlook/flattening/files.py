@@ -11,7 +11,7 @@ from typing import TypedDict, Unpack
 
 from seatlook import io
 from seatlook.errors import InputError
-from seatlook.flattening.cutting import cut_along, named, opened
+from seatlook.flattening.cutting import cut_along, opened
 from seatlook.flattening.flatten import Flattened, flatten
 from seatlook.flattening.lie import Lie, lie_of, write_lie
 from seatlook.flattening.strain_map import write_strain_maps
@@ -108,8 +108,8 @@ def read_design(
         return opened(form)
     lines, panels, bare = io.read_seam_lines(seam_lines)
     try:
-        cut = cut_along(form, lines, bare={name: panels.pop(name) for name in bare})
-        return named(cut, panels)
+        bare_at = {name: panels.pop(name) for name in bare}
+        return cut_along(form, lines, bare=bare_at, names=panels)
     except InputError as error:
         raise InputError(
             problem if problem.file else replace(problem, file=seam_lines)

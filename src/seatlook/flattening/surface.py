@@ -139,7 +139,7 @@ def _fans(faces: IntArray, pairs: IntArray) -> tuple[IntArray, IntArray]:
 
 def millimetres(point: FloatArray) -> str:
     """Return a point (3,) [m] as it stands in messages."""
-    return "[" + ", ".join(f"{1e3 * c:.0f}" for c in point) + "]"
+    return "[" + ", ".join(f"{round(1e3 * c)}" for c in point.tolist()) + "]"
 
 
 def _place(points: FloatArray) -> str:

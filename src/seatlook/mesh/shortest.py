@@ -16,7 +16,7 @@ Stop = tuple[int, int, int]
 
 
 class Net(Protocol):
-    """A mesh as lists: places, corners of each face, faces at each vertex, the border's vertices."""
+    """A mesh as lists: places, corners of faces, faces at vertices, vertices of the border."""
 
     points: list[FloatArray]
     faces: dict[int, list[int]]
@@ -83,7 +83,7 @@ def place_of(net: Net, stop: Stop) -> FloatArray:
 def _on_border(net: Net, stop: Stop) -> bool:
     """Whether a stop lies on a border."""
     a, b, _ = stop
-    return a in net.border if a == b else len((net.faces_at[a] & net.faces_at[b])) < 2
+    return a in net.border if a == b else len(net.faces_at[a] & net.faces_at[b]) < 2
 
 
 def _beside(net: Net, at: Stop) -> Iterator[Stop]:

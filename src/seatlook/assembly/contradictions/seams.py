@@ -20,7 +20,7 @@ from seatlook.assembly.sewn_surface import (
     exchanged,
     sewn_surface,
 )
-from seatlook.mesh import arc_length
+from seatlook.mesh import arc_length, edges
 from seatlook.model import Cover, FloatArray, Panel, Points, Scene, Stitching
 
 TWISTED = 0.95  # gap of a seam with one side turned round, over its gap; 1.15 and more on the demo
@@ -52,9 +52,10 @@ def wrong_seams(lines: Lines, scene: Scene, cover: Cover) -> Iterator[Contradict
                 f"{place_text(b[0])})",
                 "sides that run the same way: exchange from and to, or reverse",
             )
+    body = _handles(scene)
     certain, likely = (
         {(seams.index(one), seams.index(two)) for one, two in pairs}
-        for pairs in exchanged(scene.pattern)
+        for pairs in exchanged(scene.pattern, body)
     )
     for i, j in combinations(range(len(sides)), 2):
         other = _nearer(sides[i][0], sides[j][1]) + _nearer(sides[j][0], sides[i][1])
@@ -73,7 +74,7 @@ def wrong_seams(lines: Lines, scene: Scene, cover: Cover) -> Iterator[Contradict
                 f"{place_text(two)}; with each other's partners {1e3 * other / 2:.0f} mm{why}",
                 "each edge sewn to the partner beside it",
             )
-    if not certain and not (surface := sewn_surface(scene.pattern, seams)).closed:
+    if not certain and not (surface := sewn_surface(scene.pattern, seams)).covers(body):
         yield _no_cover(lines, scene, cover, surface, sides)
 
 
@@ -82,7 +83,7 @@ def _no_cover(
 ) -> Contradiction:
     """Seams that no exchange of two partners makes a cover of."""
     seams = scene.pattern.seams
-    if surface.handles:
+    if surface.handles > _handles(scene):
         number = int(np.argmax([gap_between(a, b) for a, b in sides]))
         places = [side[_MIDDLE] for side in sides[number]]
         here, there = map(place_text, places)
@@ -110,6 +111,12 @@ def _no_cover(
         what,
         f"none, and at most {np.degrees(WIDEST_POINT):.0f} degrees: each edge sewn to its partner",
     )
+
+
+def _handles(scene: Scene) -> int:
+    """Handles of the foam, such as 1 of a ring; a cover of it may have as many."""
+    faces = scene.foam.faces
+    return 1 - (len(np.unique(faces)) - len(edges(faces)) + len(faces)) // 2
 
 
 def _at_outline(panel: Panel, at: float, cover: Cover) -> FloatArray:

@@ -28,6 +28,7 @@ _TEMPLATE = Path(__file__).with_name("scene.toml.j2")
 _BULB = np.array([1.2, 0.53, 1.15])  # place of a bulb, in radii of the foam from its middle
 _RADIUS = 0.38  # m, of a foam on which a bulb is exposed with ...
 _EV100 = 5.0
+_SMALL_MM = 200  # widest side of a foam that may well be one in cm
 _HALVES = 2.0  # mm, from which an element size is rounded to halves
 
 
@@ -186,6 +187,8 @@ def _size_notes(path: Path, surface: io.FoamSurface, *, guessed: bool) -> tuple[
     notes += [f"foam: {width} mm wide, {depth} mm deep, {height} mm high"]
     if guessed and unit != "mm":
         notes.insert(0, f"{path}: read in {unit}, by its format or size")
+    elif guessed and max(width, depth, height) < _SMALL_MM:
+        notes.append("that is small for a part of a seat: if its file is in cm, say --unit cm")
     if height > min(width, depth):
         other = "z" if up == "y" else "y"
         notes.append(

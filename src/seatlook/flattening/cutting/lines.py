@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from seatlook.flattening.cutting.names import without
+from seatlook.flattening.cutting.names import first_named, named, without
 from seatlook.flattening.cutting.opening import opened
 from seatlook.flattening.cutting.parts import parted
 from seatlook.flattening.surface import DesignSurface
@@ -21,6 +21,7 @@ def cut_along(
     lines: Mapping[str, FloatArray],
     *,
     bare: Mapping[str, FloatArray] = MappingProxyType({}),
+    names: Mapping[str, FloatArray] = MappingProxyType({}),
 ) -> DesignSurface:
     """Cut a surface into panels along lines; where its panels met before does not matter.
 
@@ -34,6 +35,8 @@ def cut_along(
     lines : name -> (k, 3) [m]   closer than ``LINE_TOLERANCE`` to the surface; each ends on the
                                  border, on another line, or as a dart, or is closed
     bare : name -> point (3,) [m] inside a panel that is left out
+    names : name -> point (3,) [m] inside the panel that is called so; a ring that is opened into
+        two panels gives its name to both, numbered, unless each has a point of its own
 
     Returns
     -------
@@ -44,7 +47,7 @@ def cut_along(
     ------
     InputError
         A line lies off the surface, leaves it, or lies inside a panel with both ends; a panel has
-        less than 1 cm2.
+        less than 1 cm2; a point for a name lies off the surface, or in a panel that has one.
     """
     laid = lay_on(surface.vertices, surface.faces, lines, tolerance=LINE_TOLERANCE)
     drawing = imprint(surface.vertices, surface.faces, laid)
@@ -55,6 +58,7 @@ def cut_along(
         panel_names=surface.panel_names,
         seam_lines=MappingProxyType(drawing.edges),
     )
-    cut = opened(without(parted(drawn, rejoined=True), bare))
+    covered, more = first_named(without(parted(drawn, rejoined=True), bare), names)
+    cut = opened(covered)
     cut.patches()  # refuses panels that are no disk
-    return cut
+    return named(cut, names) if more else cut

@@ -35,6 +35,23 @@ def named(surface: DesignSurface, points: Mapping[str, FloatArray]) -> DesignSur
     return replace(surface, panel_names=tuple(names))
 
 
+def first_named(
+    surface: DesignSurface, points: Mapping[str, FloatArray]
+) -> tuple[DesignSurface, bool]:
+    """Name panels that may yet be cut: each by the first point in it, and whether there are more.
+
+    So both halves of a ring have its name. Points for each half count only when it is cut.
+
+    Raises
+    ------
+    InputError
+        A point off the surface.
+    """
+    first = {panel: name for name, panel in reversed(_panel_of(surface, points).items())}
+    one_each = {name: points[name] for name in points if name in first.values()}
+    return named(surface, one_each), len(one_each) < len(points)
+
+
 def without(surface: DesignSurface, points: Mapping[str, FloatArray]) -> DesignSurface:
     """Leave out the panels in which points (3,) [m] lie; their borders become free.
 
@@ -61,23 +78,35 @@ def without(surface: DesignSurface, points: Mapping[str, FloatArray]) -> DesignS
 
 def _panels_at(surface: DesignSurface, points: Mapping[str, FloatArray]) -> dict[str, int]:
     """Name -> index of the panel in which the point of that name lies, each another one."""
+    given: dict[int, str] = {}
+    problems = []
+    panels = _panel_of(surface, points)
+    for name, panel in panels.items():
+        if panel in given:
+            got = f"a point in the same panel as {given[panel]}"
+            key = f"panel.{name}.point_mm"
+            problems.append(Problem(key=key, got=got, expected="one name for a panel"))
+        given.setdefault(panel, name)
+    if problems:
+        raise InputError(problems)
+    return panels
+
+
+def _panel_of(surface: DesignSurface, points: Mapping[str, FloatArray]) -> dict[str, int]:
+    """Name -> index of the panel in which the point of that name lies."""
     if not points:
         return {}
     places = np.array(list(points.values()))
     closest = closest_places(places, surface.vertices, surface.faces, reach=_REACH)
-    given: dict[int, str] = {}
-    problems = []
-    for name, face in zip(points, closest.face.tolist(), strict=True):
-        key = f"panel.{name}.point_mm"
-        panel = -1 if face < 0 else int(surface.panel[face])
-        if panel < 0:
-            expected = f"a point at most {1e3 * _REACH:g} mm off the surface"
-            problems.append(Problem(key=key, got="one farther away", expected=expected))
-        elif panel in given:
-            got = f"a point in the same panel as {given[panel]}"
-            problems.append(Problem(key=key, got=got, expected="one name for a panel"))
-        else:
-            given[panel] = name
+    problems = [
+        Problem(
+            key=f"panel.{name}.point_mm",
+            got="one farther away",
+            expected=f"a point at most {1e3 * _REACH:g} mm off the surface",
+        )
+        for name, face in zip(points, closest.face.tolist(), strict=True)
+        if face < 0
+    ]
     if problems:
         raise InputError(problems)
-    return {name: panel for panel, name in given.items()}
+    return dict(zip(points, surface.panel[closest.face].tolist(), strict=True))
