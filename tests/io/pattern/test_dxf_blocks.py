@@ -290,3 +290,33 @@ def test_a_block_that_is_put_nowhere_is_named(sheet):
     panels, said = sheet.read()
     assert list(panels) == ["A"]
     assert said == ["block B has an outline, but is put nowhere on the sheet: not read"]
+
+
+def test_attributes_of_an_insert_name_its_piece(sheet):
+    """CAD systems that keep one block for a shape, and say at each use what it is."""
+    sheet.block("SHAPE", L_SHAPE)
+    uses = [
+        {"PIECE_NAME": "Lehne 'links'", "QTY": "1", "COLOUR": "red"},
+        {"Piece Name": "Lehne rechts", "SIZE": ""},
+        {"INFO": "Piece Name: Kissen"},
+        {},
+    ]
+    for number, attributes in enumerate(uses):
+        insert = sheet.insert("SHAPE", at=(500 * number, 0))
+        for tag, value in attributes.items():
+            insert.add_attrib(tag, value, insert=(500 * number, 50))
+    panels, said = sheet.read()
+    assert list(panels) == ["Lehne 'links'", "Lehne rechts", "Kissen", "SHAPE"]
+    assert [area(p.outline) for p in panels.values()] == pytest.approx([L_AREA] * 4)
+    assert not said
+
+
+def test_attributes_in_a_sheet_of_pieces_belong_to_their_own(sheet):
+    sheet.block("SHAPE", L_SHAPE, texts=("Piece Name: general",))
+    around = sheet.document.blocks.new("SHEET")
+    for number, name in enumerate(("A", "B")):
+        inner = sheet.insert("SHAPE", around, at=(500 * number, 0), rotation=90 * number)
+        inner.add_attrib("PIECENAME", name)
+    sheet.insert("SHEET").add_attrib("TITLE", "all")
+    panels, _ = sheet.read()
+    assert list(panels) == ["A", "B"]

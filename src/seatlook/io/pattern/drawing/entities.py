@@ -18,6 +18,13 @@ from seatlook.model import FloatArray
 _LINES = ("LINE", "POLYLINE", "LWPOLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
 _TEXTS = ("TEXT", "MTEXT", "ATTDEF", "ATTRIB")
 _SHORT = {"piece": "piece name", "qty": "quantity"}  # as some exporters write
+_TAGS = {  # of attributes
+    "piecename": "piece name",
+    "piece": "piece name",
+    "quantity": "quantity",
+    "qty": "quantity",
+    "size": "size",
+}
 _CHORD_MM = 0.001  # by which a chord may leave its curve
 _CUBICS = 16  # in an arc
 _MOST_CHORDS = 1024  # between two knots of a spline
@@ -100,6 +107,20 @@ def read_texts(layout: Any) -> dict[str, str]:
                 if colon:
                     word = key.strip().casefold()
                     texts[_SHORT.get(word, word)] = value.strip()
+    return texts
+
+
+def read_attributes(insert: Any) -> dict[str, str]:
+    """Return what the attributes of an INSERT say of its piece, as ``read_texts`` does.
+
+    An attribute holds ``Key: value``, or the value alone and the key as its tag, ``PIECE_NAME``.
+    """
+    texts = read_texts(insert.attribs)
+    for attribute in insert.attribs:
+        tag = "".join(filter(str.isalpha, attribute.dxf.get("tag", ""))).casefold()
+        value = _text(attribute)
+        if tag in _TAGS and value and ":" not in value:
+            texts.setdefault(_TAGS[tag], value)
     return texts
 
 

@@ -10,7 +10,13 @@ import numpy as np
 
 from seatlook.errors import InputError, did_you_mean
 from seatlook.io.pattern.drawing.drawing import Drawing
-from seatlook.io.pattern.drawing.entities import has_line, line_layers, matrix_of, read_texts
+from seatlook.io.pattern.drawing.entities import (
+    has_line,
+    line_layers,
+    matrix_of,
+    read_attributes,
+    read_texts,
+)
 from seatlook.io.pattern.drawing.layers import BOUNDARY, meaning
 from seatlook.model import FloatArray
 
@@ -110,8 +116,9 @@ def _placed(drawing: Drawing, notes: list[str]) -> Iterator[tuple[Use, FloatArra
         block = document.blocks.get(name)
         if block is not None and _has_outline(document, block, layer, ()):
             are_put = True
+            said = read_attributes(insert)
             for matrix in matrix_of(insert):
-                yield from _expanded(drawing, block, matrix, layer, ())
+                yield from _expanded(drawing, block, matrix, layer, (), said)
         else:
             _note_no_piece(drawing, block, name, notes)
     for block in _never_put(document):
@@ -121,7 +128,7 @@ def _placed(drawing: Drawing, notes: list[str]) -> Iterator[tuple[Use, FloatArra
             own = drawing.name_of(block.name)
             notes.append(f"block {own} has an outline, but is put nowhere on the sheet: not read")
         else:
-            yield _use(drawing, block, None, "0"), None
+            yield _use(drawing, block, None, "0", {}), None
 
 
 def _never_put(document: Any) -> list[Any]:
@@ -145,20 +152,30 @@ def _note_no_piece(drawing: Drawing, block: Any, name: str, notes: list[str]) ->
 
 
 def _expanded(
-    drawing: Drawing, block: Any, matrix: FloatArray, layer: str, around: tuple[str, ...]
+    drawing: Drawing,
+    block: Any,
+    matrix: FloatArray,
+    layer: str,
+    around: tuple[str, ...],
+    said: dict[str, str],
 ) -> Iterator[tuple[Use, FloatArray | None]]:
-    """Return the uses in a block, which is a piece, or a sheet of pieces."""
+    """Return the uses in a block, which is a piece, or a sheet of pieces.
+
+    ``said`` are the attributes of its INSERT.
+    """
     inserts = block.query("INSERT")
-    if _draws_outline(block, layer) or "piece name" in read_texts(block) or not inserts:
+    named = "piece name" in (read_texts(block) | said)
+    if _draws_outline(block, layer) or named or not inserts:
         if _has_outline(drawing.document, block, layer, ()):
-            yield _use(drawing, block, matrix, layer), matrix
+            yield _use(drawing, block, matrix, layer, said), matrix
         return
     for insert in inserts:
         inner = drawing.document.blocks.get(insert.dxf.get("name", ""))
         if inner is not None and inner.name not in around and len(around) < _DEEPEST:
             below = _layer_below(insert, layer)
+            chain, inner_said = (*around, block.name), read_attributes(insert)
             for own in matrix_of(insert):
-                yield from _expanded(drawing, inner, own @ matrix, below, (*around, block.name))
+                yield from _expanded(drawing, inner, own @ matrix, below, chain, inner_said)
 
 
 def _layer_below(insert: Any, layer: str) -> str:
@@ -187,7 +204,9 @@ def _has_outline(document: Any, block: Any, layer: str, around: tuple[str, ...])
     )
 
 
-def _use(drawing: Drawing, block: Any, matrix: FloatArray | None, layer: str) -> Use:
+def _use(
+    drawing: Drawing, block: Any, matrix: FloatArray | None, layer: str, said: dict[str, str]
+) -> Use:
     if matrix is not None:
         matrix = matrix.copy()
         matrix[3, :3] = 0.0
@@ -195,7 +214,7 @@ def _use(drawing: Drawing, block: Any, matrix: FloatArray | None, layer: str) ->
             matrix = None
     # Where the outline has its own layer, the rest on layer 0 is no outline too.
     layer = "0" if has_line(block, BOUNDARY) else layer
-    return Use(block, drawing.name_of(block.name), read_texts(block), matrix, layer)
+    return Use(block, drawing.name_of(block.name), read_texts(block) | said, matrix, layer)
 
 
 def _without_copies(placed: Iterator[tuple[Use, FloatArray | None]]) -> list[Use]:
