@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError, Problem
 from seatlook.mesh.closest import closest_places
-from seatlook.mesh.drawing import Drawing, Edge
-from seatlook.mesh.tidying import tidy
+from seatlook.mesh.drawing import Drawing, Edge, tidy
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -62,8 +62,8 @@ def _collapse(skin: Skin, flat: IntArray) -> None:
 def _flip(skin: Skin, flat: IntArray, gone: set[int]) -> bool:
     """Give the long side of flat faces to the two others; False where none could be.
 
-    A side once given away does not come back: flat faces beside flat ones would be turned to and
-    fro for ever. ``gone`` collects these sides.
+    A side once given away does not come back: flat faces beside flat ones would be turned back
+    and forth for ever. ``gone`` collects these sides.
     """
     table, n = sides(skin.faces), len(skin.vertices)
     lengths = skin.side_lengths()[flat]

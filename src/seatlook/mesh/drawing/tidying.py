@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from seatlook.mesh.drawing import FLAT, Drawing, edge_of
+from seatlook.mesh.drawing.drawing import FLAT, Drawing, edge_of
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from seatlook.errors import InputError
 from seatlook.mesh.closest import closest_places
-from seatlook.mesh.shortest import Stop, place_of, shortest_way
+from seatlook.mesh.drawing.shortest import Stop, place_of, shortest_way
 from seatlook.mesh.surface import boundary_sides
 
 FloatArray = npt.NDArray[np.float64]
