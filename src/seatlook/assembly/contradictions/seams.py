@@ -52,10 +52,9 @@ def wrong_seams(lines: Lines, scene: Scene, cover: Cover) -> Iterator[Contradict
                 f"{place_text(b[0])})",
                 "sides that run the same way: exchange from and to, or reverse",
             )
-    body = _handles(scene)
     certain, likely = (
         {(seams.index(one), seams.index(two)) for one, two in pairs}
-        for pairs in exchanged(scene.pattern, body)
+        for pairs in exchanged(scene.pattern, _handles(scene))
     )
     for i, j in combinations(range(len(sides)), 2):
         other = _nearer(sides[i][0], sides[j][1]) + _nearer(sides[j][0], sides[i][1])
@@ -74,7 +73,7 @@ def wrong_seams(lines: Lines, scene: Scene, cover: Cover) -> Iterator[Contradict
                 f"{place_text(two)}; with each other's partners {1e3 * other / 2:.0f} mm{why}",
                 "each edge sewn to the partner beside it",
             )
-    if not certain and not (surface := sewn_surface(scene.pattern, seams)).covers(body):
+    if not (certain or (surface := sewn_surface(scene.pattern, seams)).covers(_handles(scene))):
         yield _no_cover(lines, scene, cover, surface, sides)
 
 
