@@ -55,7 +55,7 @@ def agreed_ratios(
     for seam in pair(borders):
         b = seam.b[0]
         wanted = wishes[seam.a], wishes[b][::-1]
-        mean = sum(wanted) / 2
+        mean = (wanted[0] + wanted[1]) / 2
         held = np.minimum(np.clip(mean, 1 - limit, 1 + limit), _LONGEST * mean)
         held = np.maximum(held, np.minimum(*wanted) / _LONGEST)
         agreed |= {seam.a: held, b: held[::-1]}
