@@ -24,8 +24,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(600)]
 
 def test_every_room_is_drawn(browser, tmp_path):
     folder = Path(os.environ.get("SEATLOOK_PICTURES", tmp_path))
-    whole = write_seat("horseshoe", tmp_path / "whole")
-    bare = bare_folder(whole, tmp_path / "bare")
+    whole = write_seat("horseshoe", tmp_path / "horseshoe")
+    bare = bare_folder(whole, tmp_path / "my-seat")
     window = {"viewport": {"width": 1280, "height": 760}, "color_scheme": "light"}
 
     def take(page, name):

@@ -71,7 +71,9 @@ class Studio {
 
   /** @param {State} state */
   show(state) {
-    part("folder").textContent = state.folder ?? "no folder";
+    // Its own name here, the whole path for who points at it.
+    part("folder").textContent = (state.folder ?? "").split(/[\\/]/).pop() ?? "";
+    part("folder").title = state.folder ?? "";
     for (const way of /** @type {const} */ (["undo", "redo"])) {
       const words = state[way];
       find(way, HTMLButtonElement).disabled = !words;

@@ -1,5 +1,7 @@
 // Four picks sew: start and end on one line, start and direction on the other.
 
+import { percentWords } from "./seams.js";
+
 /** @typedef {import("./ring.js").Ring} Ring */
 /** @typedef {import("./sheet.js").Pick} Pick */
 /** @typedef {import("./sheet.js").Mark} Mark */
@@ -143,6 +145,6 @@ export class Sewing {
     const length = Math.abs(first.way);
     if (!second) return `${length.toFixed(1)} mm so far.`;
     const other = Math.abs(second.way);
-    return `${length.toFixed(1)} mm to ${other.toFixed(1)} mm, ease ${(100 * (length / other - 1)).toFixed(1)} %.`;
+    return `${length.toFixed(1)} mm to ${other.toFixed(1)} mm, ease ${percentWords(100 * (length / other - 1))}.`;
   }
 }
