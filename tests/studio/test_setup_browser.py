@@ -48,9 +48,10 @@ def sew_by_picks(hands: Hands, pattern: Any) -> None:
         for panel, place in places:
             hands.pick(corner_on_screen(page, panel, 1e3 * place))
         # The direction is picked on the line, not at its far end, which the studio finds.
-        hands.pick(corner_on_screen(page, owners[1], 1e3 * far[1]))
+        hands.pick(corner_on_screen(page, owners[1], 1e3 * far[len(far) // 3]))
         settled(page)
         assert page.locator("#sew-doubt").is_hidden(), page.inner_text("#sew-doubt")
+        assert page.inner_text("#status").startswith("Sewn"), seam.name
 
 
 def seam_like(state: Any, pattern: Any, name: str) -> str:
