@@ -23,6 +23,7 @@ export class PatternRoom {
     this.svg = find("sheet", SVGSVGElement);
     this.sheet = new Sheet(this.svg, {
       pick: (pick) => this.pick(pick), hover: (pick) => this.hover(pick), seam: (name) => this.choose(name),
+      sewing: () => this.sewing.step > 0,
     });
     this.sewing = new Sewing(() => this.sheet.rings);
     this.cursor = new Cursor(() => this.sheet.rings);

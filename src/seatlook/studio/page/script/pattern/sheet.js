@@ -16,6 +16,7 @@ import { Window } from "./window.js";
 
 const COLOURS = 8;
 const NARROW = 600;  // px of a sheet on which letters are smaller
+const CORNER = 6;  // px from a corner within which a click means it
 const REACH = 28;  // px from an outline within which a click picks
 
 /** @param {number} number of a seam */
@@ -31,7 +32,8 @@ function boxOf(points) {
 export class Sheet {
   /**
    * @param {SVGSVGElement} svg
-   * @param {{pick: (pick: Pick) => void, hover: (pick: Pick | null) => void, seam: (name: string) => void}} tell
+   * @param {{pick: (pick: Pick) => void, hover: (pick: Pick | null) => void, seam: (name: string) => void,
+   *   sewing: () => boolean}} tell
    */
   constructor(svg, tell) {
     this.svg = svg;
@@ -166,7 +168,8 @@ export class Sheet {
       for (const side of [seam.first, seam.second]) {
         const badge = this.sideOf(side, `seam ${tintOf(seam.number)}${lit}`, String(seam.number), `badge ${tintOf(seam.number)}${lit}`);
         badge?.addEventListener("pointerup", (event) => {
-          if (this.window.press?.moved) return;
+          // A number may lie over a corner: there, and while a seam is picked, it is in the way of a pick.
+          if (this.window.press?.moved || this.tell.sewing() || this.atCorner(event)) return;
           event.stopPropagation();
           this.window.press = null;
           this.tell.seam(seam.name);
@@ -246,6 +249,13 @@ export class Sheet {
       if (near.away < away) [best, away] = [{ panel, arc: near.arc }, near.away];
     }
     return best;
+  }
+
+  /** Whether a click means a corner. @param {MouseEvent} event */
+  atCorner(event) {
+    const pick = this.pickAt(event), ring = pick && this.rings.get(pick.panel);
+    if (!pick || !ring) return false;
+    return apart(ring.at(ring.snapped(pick.arc, Infinity)), ring.at(pick.arc)) < CORNER * this.window.pixel;
   }
 
   /** @param {PointerEvent} event */
