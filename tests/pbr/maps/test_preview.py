@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from seatlook.errors import RenderError
+from seatlook.model import Foam
 from seatlook.model.colour import srgb_encode
 from seatlook.pbr import render_preview
 from seatlook.pbr.maps.preview import _LIGHT, _PAPER, _SKY, _TINTS
+from support.boxes import rounded_block
 from support.reference.lit_sheets import above, flat, sheet
+from support.scenes import foam_material
 
 pytestmark = pytest.mark.render
 CAMERA = above(size=(160, 120), fov=20)
@@ -32,6 +35,20 @@ def test_slopes_towards_the_light_are_brighter():
     covered = np.flatnonzero(np.abs(row - row[0]) > 30)
     middle = (covered[0] + covered[-1]) // 2
     assert row[middle - 12] > 1.2 * row[middle + 12]
+
+
+def test_foam_is_seen_beside_the_cover():
+    solution = sheet(flat, steps=8)
+    x = np.array(solution.positions)
+    low, high = x.min(axis=0), x.max(axis=0)
+    vertices, faces = rounded_block(np.array([*(1.3 * (high - low)[:2]), 0.03]), 0.0, 0.006)
+    vertices = vertices + np.append((low + high)[:2] / 2, -0.05)
+    foam = Foam(vertices=vertices, faces=faces, material=foam_material())
+    carried = dataclasses.replace(solution, cover=dataclasses.replace(solution.cover, foam=foam))
+    bare, both = (render_preview(s, camera=CAMERA).astype(int) for s in (solution, carried))
+    changed = np.abs(bare - both).sum(axis=2) > 30
+    assert changed.sum() > 200
+    assert not changed[60, 80]
 
 
 def test_nothing_in_the_picture_is_an_error():

@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatlook.model import Hem, SeamKind, Thread
+from seatlook.model import Foam, Hem, SeamKind, Thread
 from seatlook.pbr.shading.allowance import profile, sides_of
 from seatlook.pbr.shading.seam import pack_thread
 from seatlook.pbr.shading.surface import drawn_surface
+from support.boxes import rounded_block
 from support.reference import sewn_relief
 from support.reference.sewn_sheet import sewn
+from support.scenes import foam_material
 
 THICKNESSES = (0.0007, 0.0012, 0.0045)
 
@@ -101,6 +103,17 @@ def test_a_score_sees_the_shape_that_was_solved():
     assert bare.mesh.vertices[: bare.vertices, 2] == pytest.approx(0.0, abs=1e-12)
     rows = bare.mesh.seam[: bare.vertices, 2]
     assert set(rows[np.isfinite(rows)]) == {1.0}
+
+
+def test_the_allowance_does_not_move_the_foam_below():
+    solution = sewn(kind=SeamKind(kind="top stitch 2"))
+    vertices, faces = rounded_block(np.array([0.09, 0.07, 0.04]), 0.0, 0.004)
+    foam = Foam(vertices=vertices - [0.0, 0.0, 0.042], faces=faces, material=foam_material())
+    carried = replace(solution, cover=replace(solution.cover, foam=foam))
+    drawn = [drawn_surface(carried, built=built).mesh for built in (True, False)]
+    lifted, bare = (mesh.vertices[-foam.faces.size :] for mesh in drawn)
+    np.testing.assert_array_equal(lifted, bare)
+    assert np.abs(drawn[0].vertices - drawn[1].vertices).max() > 1e-3
 
 
 def test_a_moved_shape_is_lifted_as_its_own():

@@ -66,11 +66,11 @@ def _drawn(solution: Solution) -> kernel.Mesh:
         np.zeros((len(x), 2)),
         faces,
         np.array(cover.panel),
-        np.full((len(x), 2), np.inf),
+        np.full((len(x), 3), np.inf),
     )
     if cover.foam is None:
         return mesh
-    return with_foam(mesh, cover.foam, len(cover.panel_names), cover=len(x))
+    return with_foam(mesh, cover.foam, len(cover.panel_names), cover=x)
 
 
 def _lit(normals: FloatArray, camera: Camera) -> FloatArray:

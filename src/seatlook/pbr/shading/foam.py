@@ -71,14 +71,15 @@ def corner_normals(x: FloatArray, faces: IntArray) -> FloatArray:
     return np.where(length > 0, n / np.maximum(length, 1e-30), (0.0, 0.0, 1.0))
 
 
-def with_foam(mesh: Mesh, foam: Foam, panel: int, *, cover: int) -> Mesh:
+def with_foam(mesh: Mesh, foam: Foam, panel: int, *, cover: FloatArray) -> Mesh:
     """Mesh with the foam's faces behind its own; every corner gets a vertex.
 
-    The first ``cover`` vertices press on the foam, the seam allowance behind them does not.
+    The first vertices of the mesh press on the foam, from where they are in ``cover`` (n, 3): not
+    lifted by what lies between. The seam allowance behind them does not press.
     """
     faces = np.array(foam.faces)
-    own = (mesh.faces < cover).all(axis=1)
-    x = pressed(foam, mesh._replace(faces=mesh.faces[own], panel=mesh.panel[own]))
+    own = (mesh.faces < len(cover)).all(axis=1)
+    x = pressed(foam, mesh._replace(vertices=cover, faces=mesh.faces[own], panel=mesh.panel[own]))
     n, k = len(mesh.vertices), faces.size
     return Mesh(
         np.vstack([mesh.vertices, x[faces.ravel()]]),

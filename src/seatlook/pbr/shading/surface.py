@@ -136,7 +136,7 @@ def drawn_surface(
         mesh = _with_allowance(mesh, edges)
     k = len(mesh.faces)
     if cover.foam is not None:
-        mesh = with_foam(mesh, cover.foam, len(cover.panel_names), cover=n)
+        mesh = with_foam(mesh, cover.foam, len(cover.panel_names), cover=x)
     coarse = np.array(cover.faces)
     return Surface(mesh, refined, n, m, k, coarse, cover.element_size, ground, lift)
 
