@@ -10,6 +10,7 @@ from seatlook.cli import (
     _improve,
     _init,
     _jury,
+    _library,
     _machine,
     _making,
     _mend,
@@ -47,6 +48,7 @@ app.command(_render.render)
 app.command(_showing.turntable)
 app.command(_showing.sheet)
 app.command(_machine.materials)
+app.command(_library.library)
 app.command(_identify.identify)
 app.command(_machine.doctor)
 app.command(_score.score)

@@ -61,6 +61,11 @@ class SceneFiles:
         # The name counts as well: it says which texture map a picture is.
         self._digests[path] = hashlib.sha256(path.name.encode() + b"\0" + content).digest()
 
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """All files that were counted."""
+        return tuple(self._digests)
+
     def digest(self) -> str:
         """Hash names and contents in the order in which they were counted, not the folders.
 

@@ -81,17 +81,22 @@ def load_scene(path: Path | str, *, changes: Iterable[str] = ()) -> Scene:
         With all problems of the scene and of its files: unknown, missing or wrong keys, files that
         are absent or unreadable, names that do not exist. Each carries its file and line.
     """
-    document = read_document(Path(path))
-    change(document, changes)
-    return _Reader(document, read_table(document, scene_keys()), SceneFiles(document)).scene()
+    return _begun(path, changes).scene()
+
+
+@reader("a scene")
+def scene_files(path: Path | str) -> tuple[Path, ...]:
+    """Return a scene's file and all that it names, by whatever way; raises as ``load_scene``."""
+    begun = _begun(path)
+    begun.scene()
+    return begun.document.file, *begun.files.paths
 
 
 @reader("a scene")
 def report_pattern(path: Path | str, *, changes: Iterable[str] = ()) -> PatternReport | None:
     """Return what is read of the pattern of a scene, None where that is no DXF file."""
-    document = read_document(Path(path))
-    change(document, changes)
-    row = read_table(document, scene_keys())
+    begun = _begun(path, changes)
+    row, document = begun.row, begun.document
     document.finish()
     file = document.file.parent / row["pattern"]["file"]
     return report_dxf(file, **_reading(row)) if file.suffix.lower() == ".dxf" else None
@@ -106,13 +111,18 @@ def load_pattern(path: Path | str) -> Pattern:
     InputError
         As ``load_scene``, of the pattern, its seams and the scene's keys alone.
     """
-    document = read_document(Path(path))
-    row = read_table(document, scene_keys())
-    pattern = _Reader(document, row, SceneFiles(document)).pattern()
+    begun = _begun(path)
+    pattern, document = begun.pattern(), begun.document
     document.finish()
     if pattern is None:
         raise InputError.single("pattern", got="none", expected="a pattern", file=document.file)
     return pattern
+
+
+def _begun(path: Path | str, changes: Iterable[str] = ()) -> _Reader:
+    document = read_document(Path(path))
+    change(document, changes)
+    return _Reader(document, read_table(document, scene_keys()), SceneFiles(document))
 
 
 def _reading(row: dict[str, Any]) -> Reading:
