@@ -240,3 +240,16 @@ def test_seams_between_the_same_panels_have_names_of_their_place():
     names = [seam.name for seam in found.pattern.seams]
     assert len(names) == len(set(names))
     assert not any(name[-1].isdigit() for name in names)
+
+
+def test_reasons_count_notches_as_one_says_it():
+    pattern = flatten(demo_design(Cushion(), element_size=0.012)).pattern
+    words = " ".join(
+        reason
+        for share, seed in ((1.0, 0), (0.5, 3), (0.5, 4), (-1.0, 1))
+        for reason in propose_seams(with_notches(pattern, share, seed)).reasons.values()
+    )
+    assert "1 notch meets" in words
+    assert "notch meets;" in words
+    for odd in ("1 notches", "0 notches", "0 do not", "1 do not", "1 corners"):
+        assert odd not in words

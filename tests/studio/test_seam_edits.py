@@ -89,3 +89,19 @@ def test_a_name_is_changed_wherever_it_stands(home):
         state = page.edit({"kind": "seam.rename", "name": "middle", "to": "centre"}).value
     assert state["seams"][0]["name"] == "centre"
     assert state["hooks"][0]["line"] == "centre"
+
+
+def test_a_seat_is_kept_under_a_name_to_compare_with(home):
+    text = (home / "scene.toml").read_text()
+    with studio(home) as (_, client):
+        assert client.state["variants"] == []
+        assert client.edit({"kind": "scene.copy", "name": "before"}).status == 200
+        assert client.state["variants"] == ["before.toml"]
+        assert client.state["scene"] == "scene.toml"
+        assert (home / "before.toml").read_text() == text
+        for name in ("before", "../out", "scene", ".hidden", "a/b"):
+            assert client.edit({"kind": "scene.copy", "name": name}).status == 422
+        undone = client.post("/api/undo", {"base": client.state["etag"]})
+        assert undone.status == 200, undone.content
+        assert undone.value["variants"] == []
+        assert not (home / "before.toml").exists()

@@ -56,10 +56,17 @@ class Folder:
         found = [path.name for path in sorted(self.root.glob("*.toml")) if _is_scene(path)]
         return found[0] if len(found) == 1 else None
 
-    def contents(self) -> dict[str, bytes]:
-        """What the files that can be changed hold now: scene, seams, curves, refused guesses."""
+    @property
+    def variants(self) -> list[str]:
+        """Names of the other scenes beside the folder's own."""
         scene = self.scene
-        names = [] if scene is None else [scene, *self._named(scene)]
+        names = [path.name for path in sorted(self.root.glob("*.toml")) if _is_scene(path)]
+        return [name for name in names if name != scene][:_MOST_FILES]
+
+    def contents(self) -> dict[str, bytes]:
+        """What the files that can be changed hold now: scenes, seams, curves, refused guesses."""
+        scene = self.scene
+        names = [] if scene is None else [scene, *self._named(scene), *self.variants]
         found = {}
         for name in [*names, REFUSED]:
             try:

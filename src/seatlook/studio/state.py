@@ -36,6 +36,7 @@ def state_values(folder: Folder, contents: Contents, scene: str | None, reading:
         "folder": str(folder.root),
         "scene": scene,
         "has_scene": scene is not None,
+        "variants": [] if scene is None else folder.variants,
         "name": reading.data.get("name", folder.root.name),
         "files": [{"path": name, "etag": etag({name: contents[name]})} for name in contents],
         "errors": [problem_values(folder, one) for one in reading.problems],

@@ -197,7 +197,7 @@ def reason(verdict: Verdict) -> str:
     pair = verdict.pair
     parts = [f"{1e3 * pair.a.length:.1f} and {1e3 * pair.b_length:.1f} mm"]
     if pair.meeting or pair.missing:
-        parts.append(f"{pair.meeting} notches meet, {pair.missing} do not")
+        parts.append(_notch_words(pair.meeting, pair.missing))
     parts.append(f"{_WORDS[verdict.ends]} at other seams")
     if pair.terms.get("bend", 0.0) > 0.6:
         parts.append("curves fit")
@@ -208,8 +208,18 @@ def reason(verdict: Verdict) -> str:
         parts.append("a dart" if dart else "closes a tube")
     turns = sum(len(side.turns) for side in (pair.a, *pair.b))
     if turns:
-        parts.append(f"{turns} corners merged")
+        parts.append("1 corner merged" if turns == 1 else f"{turns} corners merged")
     return f"probability {verdict.probability:.2f}: " + "; ".join(parts)
 
 
 _WORDS = ("no end", "one end", "both ends")
+
+
+def _notch_words(meeting: int, missing: int) -> str:
+    """Say how many notches meet one on the other side, and how many do not."""
+    if not meeting:
+        return "no notch meets"
+    if not missing:
+        return "the notch meets" if meeting == 1 else f"all {meeting} notches meet"
+    met = "1 notch meets" if meeting == 1 else f"{meeting} notches meet"
+    return f"{met}, {missing} {'does' if missing == 1 else 'do'} not"

@@ -26,6 +26,7 @@ KINDS: dict[str, Callable[[Draft, Edit], None]] = {
     "material.copy": scene.copy_material,
     "material.set": scene.set_material,
     "scene.arrange": arrange.arrange,
+    "scene.copy": scene.copy_scene,
     **{f"{table}.set": scene.set_in_table(table) for table in TABLES},
     **{f"{table}.set": scene.set_in_row(table) for table in ROWS},
     **{f"{table}.add": scene.add_to(table) for table in ROWS},

@@ -12,7 +12,7 @@ from seatlook.io.material import material_path
 from seatlook.io.toml import Key
 from seatlook.io.toml_edit import add_row, drop, put
 from seatlook.studio.edits.draft import Draft, Edit, Gone, wanted
-from seatlook.studio.folder import MATERIALS, REFUSED, parsed
+from seatlook.studio.folder import MATERIALS, REFUSED, SCENE, parsed
 
 Kind = Callable[[Draft, Edit], None]
 
@@ -105,6 +105,21 @@ def copy_material(draft: Draft, edit: Edit) -> None:
         draft.change(file, lambda text, k=key, v=value: put(text, tuple(k.split(".")), v))  # type: ignore[misc]
     if "panel" in edit:
         draft.put(("panel", wanted(edit, "panel", str), "material"), file)
+
+
+def copy_scene(draft: Draft, edit: Edit) -> None:
+    """Keep the scene as it is now in a file beside it, to compare with."""
+    name = wanted(edit, "name", str)
+    file = f"{name}.toml"
+    plain = PurePosixPath(name).name == name and not name.startswith(".")
+    if not plain or file in draft.contents or draft.folder.inside(file).exists():
+        raise InputError.single("scene.copy.name", got=repr(name), expected="a new name for a file")
+    if draft.scene != SCENE:
+        raise InputError.single(
+            "scene.copy", got=draft.scene, expected=f"a scene in {SCENE}",
+            hint="of two scenes with other names neither would be that of the folder",
+        )  # fmt: skip
+    draft.contents[file] = draft.contents[draft.scene]
 
 
 def set_material(draft: Draft, edit: Edit) -> None:

@@ -19,9 +19,9 @@
 /** @typedef {{name: string, kind: "cover" | "look" | "foam", own: boolean, values: Record<string, any>}} MaterialCard */
 /** @typedef {{name: string, status: string, stage: string, fraction: number | null, seconds_left: number | null,
  *   figures: Record<string, number | string>, errors: string[], found: string, reason: string, missed: string[],
- *   page_url?: string | null, images?: string[], snapshots?: string[]}} Run */
+ *   page_url?: string | null, images?: string[], files?: string[], command?: string, snapshots?: string[]}} Run */
 /** @typedef {{file?: string, line?: number | null, key?: string, text: string}} Fault */
-/** @typedef {{etag: string, folder: string | null, has_scene: boolean, errors: Fault[], undo: string | number | boolean | null,
+/** @typedef {{etag: string, folder: string | null, has_scene: boolean, scene: string | null, variants: string[], errors: Fault[], undo: string | number | boolean | null,
  *   redo: string | number | boolean | null, name: string,
  *   pattern: {panels: Panel[]} | null, seams: Seam[], guesses: Guess[], stages: Stage[],
  *   hooks: Record<string, any>[], wires: any[], frames: Record<string, any>[],

@@ -1,6 +1,6 @@
-// The list of seams: number, colour, both lengths, ease; turned, renamed, eased or removed.
+// The list of seams: number, colour, both lengths, ease; turned, renamed or removed.
 
-import { make, numberField, press, textField } from "../dom.js";
+import { make, press, textField } from "../dom.js";
 import { tintOf } from "./sheet.js";
 
 /** @typedef {import("../types.js").Seam} Seam */
@@ -45,10 +45,7 @@ function editor(store, seam) {
   return make("div", { class: "editor" },
     textField("Name", name, (to) => void store.edit([{ kind: "seam.rename", name, to }], `${name} is called ${to} now.`),
       { "data-key": `rename ${name}` }),
-    numberField("Ease, %", Math.round(100 * seam.ease_percent) / 100 || 0, (percent) => {
-      void store.edit([{ kind: "seam.ease", name, percent, side: "first" }], `Ease of ${name}: ${percent} %.`);
-    }, { min: -20, max: 20, "data-key": `ease ${name}` }),
-    make("p", { class: "hint" }, `It joins ${kinds[seam.kind ?? "seam"] ?? seam.kind}: ${seam.first.edges.join(", ")} to ${seam.second.edges.join(", ")}.`),
+    make("p", { class: "hint" }, `It joins ${kinds[seam.kind ?? "seam"] ?? seam.kind}: ${seam.first.edges.join(", ")} to ${seam.second.edges.join(", ")}. What another ease would do is shown under "Run".`),
     make("div", { class: "acts" },
       press("Turn", () => void store.edit([{ kind: "seam.turn", name }], `${name} is sewn the other way round.`),
         { "data-key": `turn ${name}`, title: "Sew the partner from its other end" }),

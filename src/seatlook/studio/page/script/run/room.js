@@ -2,6 +2,8 @@
 
 import { find, make, part, put } from "../dom.js";
 import { Refusal, tell } from "../api.js";
+import { Variants } from "./variants.js";
+import { WarmTry } from "./warm.js";
 
 /** @typedef {import("../store.js").Store} Store */
 /** @typedef {import("../types.js").Run} Run */
@@ -26,6 +28,9 @@ export class RunRoom {
     part("run-evaluate").addEventListener("click", () => void this.send("/api/run", {
       command: "evaluate", score: find("run-score", HTMLInputElement).checked,
     }, "Starting…"));
+    part("run-improve").addEventListener("click", () => void this.send("/api/run", { command: "improve" }, "Starting…"));
+    this.variants = new Variants(store, (other) => void this.send("/api/run", { command: "compare", others: [other] }, "Starting…"));
+    this.warm = new WarmTry(store);
     part("run-cancel").addEventListener("click", () => void this.send("/api/run/cancel", {}, "Stopping…"));
     const events = new EventSource("/api/events");
     events.addEventListener("run", (event) => this.hear(JSON.parse(event.data)));
@@ -41,7 +46,12 @@ export class RunRoom {
   show() {
     const { runs } = this, [last] = runs;
     const going = runs.find(({ status }) => status === "running");
-    find("run-evaluate", HTMLButtonElement).disabled = !this.store.now.has_scene || Boolean(going);
+    for (const id of ["run-evaluate", "run-improve"]) {
+      find(id, HTMLButtonElement).disabled = !this.store.now.has_scene || Boolean(going);
+    }
+    part("run-more").hidden = !this.store.now.has_scene;
+    this.variants.show(Boolean(going));
+    this.warm.show(runs);
     part("run-cancel").hidden = !going;
     const bar = find("run-bar", HTMLProgressElement);
     bar.hidden = !going;
@@ -91,9 +101,11 @@ function endWords({ status, found, reason, errors, missed }) {
 
 /** @param {Run} run */
 function runRow(run) {
-  const { name, status, page_url: page } = run;
+  const { name, status, page_url: page, command } = run;
+  const drawing = run.files?.find((file) => file.endsWith("/changes.png"));
   return make("li", { class: "run" },
-    make("span", { class: "name" }, name),
+    make("span", { class: "name" }, command && command !== "evaluate" ? `${name}, ${command}` : name),
     make("span", { class: "figures" }, status === "running" ? "running" : endWords(run)),
-    page ? make("a", { href: page, target: "_blank", rel: "noopener", "data-key": `run ${name}` }, "Open the page") : null);
+    page ? make("a", { href: page, target: "_blank", rel: "noopener", "data-key": `run ${name}` }, "Open the page") : null,
+    status === "done" && drawing ? make("img", { src: encodeURI(drawing), alt: "Corrections drawn on the pattern" }) : null);
 }
