@@ -18,7 +18,7 @@ export class Controls {
    * @param {Scene} scene
    * @param {number[]} middle of the seat
    * @param {{moved: () => void, look: () => void, photo: (file: File) => void, resized: () => void,
-   *   fly: (wrinkle: number) => void, seat: (number: number) => void}} tell
+   *   fly: (wrinkle: number) => void, seat: (number: number) => void, beside: (number: number) => void}} tell
    * @param {Partial<import("./drawing/payload.js").Content>[]} others seats beside the first
    */
   constructor(scene, middle, tell, others) {
@@ -40,8 +40,10 @@ export class Controls {
     offer(select("layer"), content.maps.map(({ name }, value) => ({ value, text: name })));
     const names = [content.name, ...others.map(({ name }) => name ?? "")];
     offer(select("seat"), names.map((text, value) => ({ value, text })));
-    box("seat-label").hidden = others.length === 0;
+    offer(select("beside"), names.map((text, value) => ({ value, text })));
+    for (const name of ["seat-label", "beside-label"]) box(name).hidden = others.length === 0;
     select("seat").addEventListener("change", () => this.tell.seat(Number(select("seat").value)));
+    select("beside").addEventListener("change", () => this.tell.beside(Number(select("beside").value)));
     this.offerWrinkles();
     for (const view of content.views) {
       const button = document.createElement("button");
@@ -164,6 +166,7 @@ export class Controls {
   /** Say in every control what is shown. */
   show() {
     select("seat").value = String(this.scene.seatNumber);
+    select("beside").value = String(this.scene.besideNumber);
     this.showLight();
     this.showMaterial();
     this.showLayer();

@@ -25,7 +25,7 @@ export class Knowledge {
   at(mesh, hit) {
     const part = this.content.parts[hit.part].name;
     const face = mesh.solverFace(hit);
-    if (face < 0) return `Here: ${part}.`;
+    if (face < 0) return `${part}.`;
     const [u, v] = mesh.patternAt(hit).map((x) => (1e3 * x).toFixed(0));
     const maps = this.content.maps.map((map, k) => {
       const value = this.values[k][face];
@@ -34,7 +34,7 @@ export class Knowledge {
     });
     const seam = this.nearestSeam(hit.place);
     const [along, across] = [0, 1].map((k) => `${this.strain[2 * face + k].toFixed(1)} %`);
-    return `Here: ${part}, pattern u ${u}, v ${v} mm. ${maps.join(", ")}.${this.cause(face)}`
+    return `${part}, pattern u ${u}, v ${v} mm. ${maps.join(", ")}.${this.cause(face)}`
       + ` Strain ${along} along the grain, ${across} across.`
       + (seam ? ` Nearest seam: ${seam.name}, ${(1e3 * seam.away).toFixed(0)} mm away.` : "");
   }

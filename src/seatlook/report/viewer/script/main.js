@@ -2,6 +2,7 @@
 
 import { Controls, drawBar } from "./controls.js";
 import { Knowledge } from "./here.js";
+import { Panes } from "./panes.js";
 import { Pointer } from "./pointer.js";
 import { Renderer } from "./drawing/renderer.js";
 import { Scene } from "./scene.js";
@@ -34,18 +35,18 @@ class Viewer {
     this.fit();
     this.renderer = new Renderer(this.canvas, page, array);
     this.scene = new Scene(page);
+    this.panes = new Panes(this.renderer, (content) => this.shown(content));
     /** @type {{data: string, picture: ImageBitmap, texture: WebGLTexture} | null} */
     this.photo = null;
-    this.knowledge = new Knowledge(page, array);
     /** @type {{content: Content, mesh: Mesh, knowledge: Knowledge}[]} */
-    this.seats = [{ content: page, mesh: this.renderer.mesh, knowledge: this.knowledge }];
+    this.seats = [{ content: page, mesh: this.renderer.mesh, knowledge: new Knowledge(page, array) }];
     this.bars = ["viridis", "diverging"].map(array);
     // Lights stay where they are when another seat is shown.
     this.middle = this.renderer.mesh.middle;
     this.controls = new Controls(this.scene, this.middle, {
       moved: () => this.moved(), look: () => this.relook(), photo: (file) => void this.takePhoto(file),
       resized: () => this.moved(), fly: (wrinkle) => this.fly(wrinkle),
-      seat: (number) => void this.change(number),
+      seat: (number) => void this.change(number), beside: (number) => void this.pair(number),
     }, page.others);
     this.pointer = new Pointer(this.canvas, this.scene.camera, () => this.moved(), (x, y) => this.pick(x, y));
     this.stir = 0;
@@ -53,7 +54,7 @@ class Viewer {
     this.coarse = false;
     this.listen();
     this.showSeat();
-    this.renderer.refill(this.shown());
+    this.panes.refill();
   }
 
   listen() {
@@ -95,10 +96,10 @@ class Viewer {
     return true;
   }
 
-  /** @returns {Shown} */
-  shown() {
+  /** What is to be seen of a seat. @param {Content} content @returns {Shown} */
+  shown(content) {
     const { scene, photo, middle } = this;
-    const { materials, look } = scene.materials();
+    const { materials, look } = scene.materials(content);
     const width = Number(input("photo-size").value) / 1e3;
     return {
       rig: scene.rig(middle), materials, look, layer: scene.layer, ev100: scene.ev100(middle), camera: scene.camera,
@@ -115,21 +116,57 @@ class Viewer {
    */
   async change(number) {
     this.scene.seatNumber = number;
+    const { content, mesh } = await this.seat(number);
+    // Another one may have been chosen while this one was made ready.
+    if (this.scene.seatNumber !== number) return;
+    this.panes.first.put(content, mesh);
+    this.scene.content = content;
+    this.rename();
+    this.showSeat();
+    this.relook();
+  }
+
+  /**
+   * Show one more seat beside it, by the same camera; none for -1.
+   * @param {number} number
+   */
+  async pair(number) {
+    this.scene.besideNumber = number;
+    const seat = number < 0 ? null : await this.seat(number);
+    if (this.scene.besideNumber !== number) return;
+    if (seat) this.panes.beside(seat.content, seat.mesh);
+    else this.panes.pair = false;
+    box("glass").toggleAttribute("data-pair", seat !== null);
+    this.fit();
+    this.rename();
+    this.controls.show();
+    this.relook();
+  }
+
+  /** A seat of the page, made ready where it is not yet. @param {number} number */
+  async seat(number) {
     delete box("room").dataset.still;
     if (!this.seats[number]) {
       const { content, array } = await seatOf(this.page, this.array, number);
       const mesh = new Mesh(this.renderer.gl, content, array);
-      this.seats[number] = { content, mesh, knowledge: new Knowledge(content, array) };
+      this.seats[number] ??= { content, mesh, knowledge: new Knowledge(content, array) };
     }
-    // Another one may have been chosen while this one was made ready.
-    if (this.scene.seatNumber !== number) return;
-    const { content, mesh, knowledge } = this.seats[number];
-    this.renderer.put(content, mesh);
-    this.knowledge = knowledge;
-    this.scene.content = content;
+    return this.seats[number];
+  }
+
+  /** Those that are shown, the first one first. */
+  get shownSeats() {
+    const found = this.panes.list.map(({ content }) => this.seats.find((seat) => seat?.content === content));
+    return found.filter((seat) => seat !== undefined);
+  }
+
+  /** Say in the picture which seat is which, and nothing of a place of others. */
+  rename() {
     box("here").textContent = "";
-    this.showSeat();
-    this.relook();
+    ["first", "second"].forEach((place, k) => {
+      box(`${place}-name`).hidden = !this.panes.pair;
+      box(`${place}-name`).textContent = this.shownSeats[k]?.content.name ?? "";
+    });
   }
 
   /** What differs from seat to seat in the controls. */
@@ -143,14 +180,15 @@ class Viewer {
   moved() {
     this.stir = performance.now();
     delete box("room").dataset.still;
-    this.renderer.restart();
+    this.panes.restart();
+    this.pointer.rows = this.panes.pair && this.panes.stacked ? 2 : 1;
     if (this.scene.layer >= 0) drawBar(this.bars[this.scene.content.maps[this.scene.layer].low < 0 ? 1 : 0]);
     this.coarse = true;
     this.ask();
   }
 
   relook() {
-    this.renderer.refill(this.shown());
+    this.panes.refill();
     this.moved();
   }
 
@@ -162,23 +200,27 @@ class Viewer {
   frame() {
     if (this.coarse) {
       this.coarse = false;
-      this.renderer.move(this.shown());
+      this.panes.move();
       this.ask();
     } else if (performance.now() - this.stir < STILL) {
       this.ask();
-    } else if (this.renderer.rest(this.shown())) {
+    } else if (this.panes.rest()) {
       this.ask();
     } else {
       box("room").dataset.still = "yes";
     }
   }
 
-  /** @param {number} x @param {number} y */
+  /** Of two seats, both are asked at the same place of their parts. @param {number} x @param {number} y */
   pick(x, y) {
-    const { camera } = this.scene;
-    const ray = camera.ray(x, y, this.canvas.width / this.canvas.height);
-    const hit = this.renderer.mesh.hit(camera.position, ray);
-    box("here").textContent = hit ? this.knowledge.at(this.renderer.mesh, hit) : "Here: nothing of the seat.";
+    const { scene: { camera }, panes } = this;
+    // Between two of them lies the middle of the whole picture: from the keyboard, that of each is meant.
+    const [u, v] = x === 0 && y === 0 ? [0, 0] : panes.inside(x, y);
+    const ray = camera.ray(u, v, panes.aspect);
+    box("here").textContent = this.shownSeats.map(({ content, mesh, knowledge }) => {
+      const hit = mesh.hit(camera.position, ray);
+      return `${panes.pair ? content.name : "Here"}: ${hit ? knowledge.at(mesh, hit) : "nothing of the seat."}`;
+    }).join("\n");
   }
 
   /** @param {number} number */
@@ -219,7 +261,7 @@ class Viewer {
   finish() {
     cancelAnimationFrame(this.asked);
     this.coarse = false;
-    while (this.renderer.rest(this.shown()));
+    while (this.panes.rest());
   }
 
   async save() {
@@ -267,6 +309,7 @@ class Viewer {
   async choose(choice) {
     this.scene.choose(choice);
     await this.change(choice.seat);
+    await this.pair(choice.beside);
     if (choice.photo) {
       input("photo-size").value = String(choice.photo.width);
       this.lay(await photoOf(choice.photo.data), choice.photo.data);

@@ -18,6 +18,7 @@ export class Pointer {
     this.camera = camera;
     this.moved = moved;
     this.picked = picked;
+    this.rows = 1;  // of seats, one above the other
     /** @type {Map<number, number[]>} */
     this.held = new Map();
     this.travel = 0;
@@ -43,7 +44,7 @@ export class Pointer {
   drag(event) {
     const before = this.held.get(event.pointerId);
     if (!before) return;
-    const height = this.canvas.clientHeight;
+    const height = this.canvas.clientHeight / this.rows;
     const step = [(event.clientX - before[0]) / height, (event.clientY - before[1]) / height];
     const others = [...this.held].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
     this.held.set(event.pointerId, [event.clientX, event.clientY]);

@@ -8,7 +8,7 @@ import { luxAt, moved, placeOf } from "./drawing/lights.js";
 /** @typedef {import("./drawing/payload.js").Material} Material */
 /** @typedef {{azimuth: number, elevation: number, distance: number}} LightPlace */
 /** @typedef {{albedo?: number[], roughness?: number, nap?: number}} Changes */
-/** @typedef {{seat: number, rig: number, place: LightPlace | null, power: number, follow: boolean, look: number,
+/** @typedef {{seat: number, beside: number, rig: number, place: LightPlace | null, power: number, follow: boolean, look: number,
  *   changes: Changes, layer: number, camera: import("./drawing/camera.js").State,
  *   photo: {data: string, width: number} | null}} Choice */
 
@@ -19,6 +19,7 @@ export class Scene {
     this.content = content;
     this.camera = new Camera(content.views[0]);
     this.seatNumber = 0;
+    this.besideNumber = -1;
     this.rigNumber = 0;
     this.lookNumber = 0;
     /** @type {LightPlace | null} */
@@ -93,11 +94,11 @@ export class Scene {
   }
 
   /** Materials and the number of each part's among them; the foam, which comes last, keeps its own. */
-  materials() {
-    const numbers = this.content.looks[this.lookNumber].materials;
+  materials(content = this.content) {
+    const numbers = content.looks[this.lookNumber].materials;
     const cover = numbers.slice(0, -1), foam = numbers[numbers.length - 1];
     const used = [...new Set(cover)];
-    const { materials } = this.content;
+    const { materials } = content;
     return {
       materials: [...used.map((number) => this.changed(materials[number])), materials[foam]],
       look: [...cover.map((number) => used.indexOf(number)), used.length],
@@ -107,7 +108,7 @@ export class Scene {
   /** @returns {Omit<Choice, "photo">} */
   choice() {
     return {
-      seat: this.seatNumber, rig: this.rigNumber, place: this.place, power: this.power, follow: this.follow, look: this.lookNumber,
+      seat: this.seatNumber, beside: this.besideNumber, rig: this.rigNumber, place: this.place, power: this.power, follow: this.follow, look: this.lookNumber,
       changes: this.changes, layer: this.layer, camera: { ...this.camera.state },
     };
   }

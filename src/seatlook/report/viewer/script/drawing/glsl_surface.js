@@ -281,16 +281,17 @@ uniform sampler2D uSum;
 uniform float uCount;
 uniform vec3 uNeutral;
 uniform vec3 uPaper;
-uniform vec2 uSize;
+uniform vec4 uArea;
 uniform vec2 uDrawn;
 out vec4 oColour;
 
 void main() {
-  vec4 sum = texelFetch(uSum, ivec2(gl_FragCoord.xy * uDrawn / uSize), 0);
+  vec2 inside = gl_FragCoord.xy - uArea.xy;
+  vec4 sum = texelFetch(uSum, ivec2(inside * uDrawn / uArea.zw), 0);
   vec3 x = (sum.rgb + (uCount - sum.a) * uPaper) / uCount / uNeutral;
   x = clamp(x, 0.0, 1.0);
   vec3 code = mix(1.055 * pow(max(x, 1e-9), vec3(1.0 / 2.4)) - 0.055, 12.92 * x, vec3(lessThanEqual(x, vec3(0.0031308))));
-  vec2 at = vec2(floor(gl_FragCoord.x), uSize.y - 1.0 - floor(gl_FragCoord.y));
+  vec2 at = vec2(floor(inside.x), uArea.w - 1.0 - floor(inside.y));
   float noise = fract(52.9829189 * fract(dot(at, vec2(0.06711056, 0.00583715))));
   oColour = vec4(floor(clamp(255.0 * code + 0.002 + 0.996 * noise, 0.0, 255.0)) / 255.0, 1.0);
 }

@@ -42,11 +42,12 @@ export class MaterialTable {
   /**
    * @param {WebGL2RenderingContext} gl
    * @param {Record<string, WebGLTexture>} tables
+   * @param {import("./gl.js").Program} [program] of another table
    */
-  constructor(gl, tables) {
+  constructor(gl, tables, program) {
     this.gl = gl;
     this.tables = tables;
-    this.program = programOf(gl, WHOLE, termsOf(ALL) + BRDF + MATERIALS + COUPLING);
+    this.program = program ?? programOf(gl, WHOLE, termsOf(ALL) + BRDF + MATERIALS + COUPLING);
     /** @type {WebGLTexture | null} */
     this.rows = null;
     /** @type {ReturnType<typeof targetOf> | null} */

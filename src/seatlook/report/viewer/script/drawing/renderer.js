@@ -1,11 +1,12 @@
 // Pictures of the seat: one coarse sample while something moves, then several fine ones, summed.
 
-import { DISPLAY, MOST_LIGHTS, OVERLAY, SHADE } from "./glsl_surface.js";
+import { DISPLAY, OVERLAY, SHADE } from "./glsl_surface.js";
 import { termsOf } from "./glsl_brdf.js";
 import { WHOLE, bind, fill, newTexture, programOf, sampling, set, use } from "./gl.js";
 import { discPoint, isWide, lightsOf } from "./lights.js";
 import { MaterialTable, detailOf, needsOf, reliefsOf, tablesOf } from "./materials.js";
 import { Mesh } from "./mesh.js";
+import { Pane, SHADOW } from "./pane.js";
 import { Seen } from "./seen.js";
 import { TILES, Tiles } from "./tiles.js";
 
@@ -16,7 +17,6 @@ import { TILES, Tiles } from "./tiles.js";
  *   look: number[], layer: number, ev100: number, camera: Camera,
  *   photo: {texture: WebGLTexture, pixels: number[], size: number[]} | null}} Shown */
 
-const SHADOW = 2048;
 const CARD = 0.18;
 const PAPER = Math.pow(97 / 255, 2.2);
 // A picture at rest may take so long [ms], one while something moves so long.
@@ -35,9 +35,8 @@ export class Renderer {
     if (!gl || !gl.getExtension("EXT_color_buffer_float")) throw new Error("no WebGL 2 with float pictures");
     this.canvas = canvas;
     this.gl = gl;
-    this.content = content;
-    this.mesh = new Mesh(gl, content, array);
-    this.table = new MaterialTable(gl, tablesOf(gl, array, content.stretched));
+    const table = new MaterialTable(gl, tablesOf(gl, array, content.stretched));
+    this.pane = new Pane(gl, content, new Mesh(gl, content, array), table);
     this.reliefs = reliefsOf(gl, content, array);
     this.programs = {
       overlay: programOf(gl, WHOLE, OVERLAY), display: programOf(gl, WHOLE, DISPLAY),
@@ -46,10 +45,8 @@ export class Renderer {
     this.shaders = new Map();
     this.colours = ["viridis", "diverging"].map((name) => this.colourTable(array(name)));
     this.blank = this.colourTable(Uint8Array.of(255, 255, 255));
-    this.shadows = this.shadowMaps();
     this.seen = new Seen(gl);
     this.tiles = new Tiles(gl);
-    this.shadowKey = "";
     this.cost = 4e-4;  // ms per pixel and sample, measured as it goes; begun with that of software
     this.count = 4;
     this.done = 0;
@@ -66,27 +63,17 @@ export class Renderer {
     return texture;
   }
 
-  shadowMaps() {
-    const gl = this.gl;
-    const layers = Math.max(1, ...this.content.rigs.map((rig) => Math.min(rig.lights.length, MOST_LIGHTS)));
-    const texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
-    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.DEPTH_COMPONENT24, SHADOW, SHADOW, layers);
-    for (const [key, value] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
-      [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE],
-      [gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE], [gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL]]) {
-      gl.texParameteri(gl.TEXTURE_2D_ARRAY, key, value);
-    }
-    const frames = Array.from({ length: layers }, (_, k) => {
-      const frame = gl.createFramebuffer();
-      gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-      gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, texture, 0, k);
-      gl.drawBuffers([gl.NONE]);
-      gl.readBuffer(gl.NONE);
-      return frame;
-    });
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    return { texture, frames };
+  get content() {
+    return this.pane.content;
+  }
+
+  get mesh() {
+    return this.pane.mesh;
+  }
+
+  /** Left, lower end, width and height of what is drawn into. */
+  get area() {
+    return this.pane.area ?? [0, 0, this.canvas.width, this.canvas.height];
   }
 
   /** Begin a picture anew. */
@@ -94,20 +81,9 @@ export class Renderer {
     this.done = 0;
   }
 
-  /**
-   * Draw another seat of the page from now on.
-   * @param {Content} content
-   * @param {Mesh} mesh
-   */
-  put(content, mesh) {
-    this.content = content;
-    this.mesh = mesh;
-    this.shadowKey = "";
-  }
-
   /** Materials have changed. @param {Shown} shown */
   refill(shown) {
-    this.table.fill(shown.materials);
+    this.pane.table.fill(shown.materials);
   }
 
   /**
@@ -115,8 +91,9 @@ export class Renderer {
    * @param {Shown} shown
    */
   move(shown) {
-    const { width, height } = this.canvas;
-    const scale = SCALES.find((s) => this.cost * width * height / (s * s) <= MOVE) ?? SCALES[SCALES.length - 1];
+    const { width: wide, height: high } = this.canvas, [, , width, height] = this.area;
+    // All of the canvas is drawn in that time, in however many parts.
+    const scale = SCALES.find((s) => this.cost * wide * high / (s * s) <= MOVE) ?? SCALES[SCALES.length - 1];
     const size = [Math.max(1, Math.round(width / scale)), Math.max(1, Math.round(height / scale))];
     const start = performance.now();
     this.seen.fit(width, height);
@@ -135,9 +112,9 @@ export class Renderer {
    * @param {number} most samples, where their number does not go by time
    */
   rest(shown, most = 0) {
-    const { width, height } = this.canvas;
+    const { width: wide, height: high } = this.canvas, [, , width, height] = this.area;
     if (this.done === 0) {
-      const within = SAMPLES.filter((n) => n * this.cost * width * height <= REST);
+      const within = SAMPLES.filter((n) => n * this.cost * wide * high <= REST);
       this.count = most || (within[within.length - 1] ?? SAMPLES[0]);
     }
     if (this.done >= this.count) return false;
@@ -205,14 +182,14 @@ export class Renderer {
     const { gl, mesh } = this;
     const wide = count > 1 && shown.rig.lights.some((light) => isWide(light, mesh.middle));
     const key = JSON.stringify([shown.rig.lights.map((l) => [l.vector, l.sides]), wide ? [index, count] : 0]);
-    if (key === this.shadowKey) return;
-    this.shadowKey = key;
+    if (key === this.pane.shadowKey) return;
+    this.pane.shadowKey = key;
     gl.viewport(0, 0, SHADOW, SHADOW);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1.5, 2);
     use(gl, this.seen.depth, mesh.ranges);
     for (let k = 0; k < shown.rig.lights.length; ++k) {
-      gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadows.frames[k]);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, this.pane.shadows.frames[k]);
       gl.clearBufferfv(gl.DEPTH, 0, [1]);
       set(gl, this.seen.depth, { uCamera: matrices.subarray(16 * k, 16 * k + 16) });
       this.drawCover();
@@ -255,7 +232,7 @@ export class Renderer {
           ...detail.uniforms, uRow: row, uPhotoSize: photo ? [...photo.size, ...photo.pixels] : [0, 0, 0, 0],
         });
         bind(gl, shade, {
-          ...this.table.textures, uShadows: this.shadows.texture, uSlopes: detail.texture ?? this.blank,
+          ...this.pane.table.textures, uShadows: this.pane.shadows.texture, uSlopes: detail.texture ?? this.blank,
           uPhoto: photo?.texture ?? this.blank, ...this.seen.what,
         });
         this.tiles.draw(row, sewn);
@@ -293,11 +270,11 @@ export class Renderer {
   /** @param {number[]} size as much of the sum as is drawn @param {number} count @param {Shown} shown */
   display(size, count, shown) {
     const { gl } = this;
-    const { width, height } = this.canvas;
+    const [left, low, width, height] = this.area;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, width, height);
+    gl.viewport(left, low, width, height);
     use(gl, this.programs.display, {
-      uCount: count, uNeutral: shown.layer < 0 ? shown.rig.white : [1, 1, 1], uSize: [width, height], uDrawn: size,
+      uCount: count, uNeutral: shown.layer < 0 ? shown.rig.white : [1, 1, 1], uArea: [left, low, width, height], uDrawn: size,
       uPaper: this.paper(shown),
     });
     bind(gl, this.programs.display, { uSum: this.seen.shaded });
