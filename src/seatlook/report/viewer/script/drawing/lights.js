@@ -1,7 +1,7 @@
 // The lights of a rig as shaders take them, and the way to where each shines.
 
 import { MOST_LIGHTS } from "./glsl_surface.js";
-import { along, anglesOf, cross, lookAt, minus, norm, orthographic, perspective, product, towards, unit } from "./matrix.js";
+import { along, anglesOf, cross, dot, lookAt, minus, norm, orthographic, perspective, product, towards, unit } from "./matrix.js";
 
 /** @typedef {import("./payload.js").Light} Light */
 /** @typedef {import("./payload.js").Rig} Rig */
@@ -123,7 +123,8 @@ export function placeOf(light, middle) {
 }
 
 /**
- * The same light elsewhere; a rectangle turns with it.
+ * The same light elsewhere. A rectangle goes on facing what it faces, and its first side points where
+ * it did, as far as that lies across: as a scene with another `position_mm` has it.
  * @param {Light} light
  * @param {number[]} middle
  * @param {{azimuth: number, elevation: number, distance: number}} place
@@ -134,8 +135,19 @@ export function moved(light, middle, place) {
   const vector = light.near ? along(middle, place.distance, to) : to;
   if (!light.sides) return { ...light, vector };
   const [a, b] = light.sides;
-  const [t, s] = across(to);
-  return { ...light, vector, sides: [t.map((c) => c * norm(a)), s.map((c) => -c * norm(b))] };
+  const ahead = unit(minus(aimOf(light, middle), vector));
+  const first = along(a, -dot(a, ahead), ahead), second = along(b, -dot(b, ahead), ahead);
+  // A first side that points at the seat leaves the second one to say how the light is turned.
+  const t = norm(first) > 1e-3 * norm(a) ? unit(first) : unit(cross(second, ahead));
+  return { ...light, vector, sides: [along([0, 0, 0], norm(a), t), along([0, 0, 0], norm(b), cross(ahead, t))] };
+}
+
+/** The place ahead of a rectangle that is nearest to the middle of the seat. @param {Light} light @param {number[]} middle */
+function aimOf({ vector, sides }, middle) {
+  if (!sides) return middle;
+  const ahead = unit(cross(sides[0], sides[1]));
+  const far = dot(minus(middle, vector), ahead);
+  return far > 0 ? along(vector, far, ahead) : middle;
 }
 
 /**
