@@ -26,7 +26,7 @@ from seatlook.model.progress import Progress, silent
 from seatlook.model.scene import SCORE_MEASURES
 from seatlook.report.assembly_picture import draw_assembly
 from seatlook.report.comparison_page import write_comparison
-from seatlook.report.evaluation_page import write_report
+from seatlook.report.evaluation_page import page_answer, write_report
 from seatlook.report.page.types import Check, ScoreSection
 from seatlook.report.sections.score import visibility
 from seatlook.report.viewer_page import ViewerPage, viewer_page
@@ -42,6 +42,11 @@ class Outcome:
     page: Path
     evaluation: Evaluation
     score: ScoreSection | None
+
+    @property
+    def answer(self) -> tuple[str, ...]:
+        """The sentences that the page begins with: what shows, what to do, what not to trust."""
+        return page_answer(self.evaluation, self.score)
 
     @property
     def missed(self) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ def test_check_tells_what_would_be_solved(demo_scene, capsys):
     ratio = found["wavelength_mm"] / found["element_size_mm"]
     assert found["wavelength_over_element_size"] == pytest.approx(ratio)
     assert found["expected_status"] == "converged, not resolved"
+    assert found["criterion"] == "tensor, 0.02 per mm"
     waves = {wave["material"]: wave for wave in found["waves"]}
     assert not waves["leather-laminate"]["resolved"]
     least = min(wave["wavelength_over_element_size"] for wave in waves.values())

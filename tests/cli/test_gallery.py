@@ -6,6 +6,7 @@ import csv
 import json
 import re
 import shutil
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -37,10 +38,14 @@ def evaluated(demo_scene: Path, tmp_path_factory: pytest.TempPathFactory) -> Pat
 
 @pytest.mark.render
 def test_evaluate_leaves_a_whole_gallery_and_names_the_missed_limit(evaluated):
-    code, *foretold, gallery, first, second, status = (
-        (evaluated / "stderr").read_text().splitlines()
-    )
+    code, *told, gallery, first, second, status = (evaluated / "stderr").read_text().splitlines()
     assert code == "1"
+    foretold = [line for line in told if line.startswith("will not be resolved: ")]
+    # What the page begins with stands at the end of the log, word for word.
+    answer, page = told[len(foretold) :], unescape((evaluated / "index.html").read_text())
+    assert len(answer) >= 2
+    assert all(line in page for line in answer)
+    assert any(line.startswith("Do not build on this yet: ") for line in answer)
     reasons = [line.removeprefix("will not be resolved: ") for line in foretold]
     assert status == f"converged, not resolved: {'; '.join(reasons)}"
     assert first.startswith("INSERT interior: w2_mean is ")

@@ -16,7 +16,8 @@ def test_scene_is_solved_no_finer_than_asked(tmp_path, capsys):
     told = capsys.readouterr()
     rows = json.loads(told.out)
     assert {row["zone"] for row in rows} >= {"seam middle", "LEFT interior", "RIGHT interior"}
-    assert any(row["error"] > 0.0 for row in rows)
+    assert any(row["w2_mesh_error"] > 0.0 for row in rows)
+    assert {row["criterion"] for row in rows} == {"tensor, 0.02 per mm"}
     # Eight elements to a wave, however loose the tolerance.
     assert 0.007 < io.read_result(out).cover.element_size < 0.009
     assert ", 8 to a wave of 6" in told.err

@@ -56,6 +56,10 @@ def test_the_bent_strip_from_both_formats(mode, c, tmp_path):
     deck = json.loads(seatlook(*words, cwd=tmp_path).stdout)
     assert [s["c"] for s in deck["states"]] == pytest.approx([-c], rel=0.01)
     assert deck["c_threshold_per_mm"] == c
+    assert deck["criterion"] == f"{mode}, {c:g} per mm"
+    head, *rows = seatlook(*words[:-1], cwd=tmp_path).stdout.splitlines()
+    assert head.split()[-1] == "criterion"
+    assert all(row.endswith(f"{mode}, {c:g} per mm") for row in rows)
 
 
 def test_options_reach_the_figures(capsys):

@@ -3,6 +3,7 @@
 import itertools
 import json
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 
@@ -46,6 +47,22 @@ def test_every_pair_once_repeats_exchanged_catches_under_wrinkles(questionnaire,
             assert (again.left, again.right) == (before.right, before.left)
             assert again.number > before.number
     assert {t.question for t in session if t.kind == "catch"} == {"wrinkles"}
+
+
+@pytest.mark.parametrize(
+    ("asked", "under"),
+    [
+        (("seen",), {"seen"}),
+        (("preference", "seen"), {"seen"}),
+        (("seen", "wrinkles"), {"wrinkles"}),
+        (("preference",), set()),
+    ],
+)
+def test_judges_are_screened_under_a_question_that_has_a_right_answer(questionnaire, asked, under):
+    session = trials(replace(questionnaire, questions=asked), 1)
+    caught = [t for t in session if t.kind == "catch"]
+    assert {t.question for t in caught} == under
+    assert len(caught) == (len(questionnaire.catches) if under else 0)
 
 
 def test_order_and_sides_differ_between_judges_and_are_balanced_over_them(questionnaire):

@@ -9,6 +9,7 @@ import pytest
 
 from seatlook.assembly import assemble
 from seatlook.errors import InputError
+from seatlook.model import Criteria
 from seatlook.sweeps.cell import Cell
 from seatlook.sweeps.probability import Chance, chance, zone_chances
 from support import scenes
@@ -59,7 +60,8 @@ def test_without_a_converged_cover_nothing_is_said(tmp_path):
 def test_zones_have_means_by_area_with_both_bounds():
     cover = assemble(scenes.two_panels())
     share = np.where(cover.zone == cover.zone.max(), 0.5, 0.0)
-    rows = zone_chances(Chance(share=share, converged=8, left_out=2), cover)
+    rows = zone_chances(Chance(share=share, converged=8, left_out=2), cover, Criteria())
+    assert {row["criterion"] for row in rows} == {"tensor, 0.02 per mm"}
     assert [row["zone"] for row in rows] == [
         name for k, name in enumerate(cover.zone_names) if (cover.zone == k).any()
     ]

@@ -65,6 +65,18 @@ def test_the_side_that_is_off_from_the_rest_of_the_cover_is_the_one_to_cut(
     assert ("half of it" in one.sentence) == (confidence == "medium")
 
 
+@pytest.mark.parametrize(("a", "b", "u"), [(-0.02, 0.01, 130), (0.01, -0.02, 210)])
+def test_a_seam_of_one_panel_says_which_of_its_edges(a, b, u):
+    """Borders at x = 120 and 200 mm, the pattern moved by 10; half way up, so v = 70."""
+    solution = strained(a, b)
+    (stretch,) = seam_excess(solution)
+    tube = replace(stretch, long_panel="P0", short_panel="P0")
+    (advice,) = advise(solution, [tube], [])
+    assert advice.panel == "P0"
+    assert f"take 3.6 mm out of the edge of P0 at pattern u, v = {u}, 70 mm" in advice.sentence
+    assert f"longer than P0 at pattern u, v = {340 - u}, 70 mm" in advice.sentence
+
+
 @pytest.mark.parametrize(
     ("a", "b"), [(0.0, 0.0), (0.01, 0.01), (-0.002, 0.002), (0.008, 0.0125), (0.0, 0.0049)]
 )

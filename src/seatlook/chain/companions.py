@@ -42,12 +42,14 @@ class ZoneMean:
     ----------
     error : of the mesh; nan where it is not known
     scatter : 95 % half-width of what another seed gives; nan where it is not known
+    criterion : mode and threshold of its W2, as in ``ZoneRow``
     """
 
     zone: str
     w2_mean: float
     error: float
     scatter: float = math.nan
+    criterion: str = ""
 
     @property
     def bound(self) -> float:

@@ -166,7 +166,7 @@ def solve_to(
     by_zone = {zone: orders[kind] for kind, zones in kinds.items() for zone in zones}
     errors = mesh_errors(rows[0], rows[1], rows[2:], _RATIO, by_zone)
     zones = tuple(
-        ZoneMean(row.zone, row["w2_mean"], errors[row.zone], scatter(rows[2:], row))
+        ZoneMean(row.zone, row["w2_mean"], errors[row.zone], scatter(rows[2:], row), row.criterion)
         for row in rows[0]
     )
     _, error = compare_means(rows[0], rows[1], errors)

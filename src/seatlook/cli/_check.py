@@ -102,6 +102,7 @@ def _mesh_figures(cover: Cover, waves: Sequence[Waves], seat: Seat) -> list[tupl
         ("hooks_and_frames", len(cover.anchors)),
         ("vertices", len(cover.rest)),
         ("triangles", len(cover.faces)),
+        ("criterion", seat.criteria.words()),
         ("element_size_mm", 1e3 * cover.element_size),
         ("wavelength_mm", 1e3 * finest.wavelength),
         ("wavelength_over_element_size", finest.wavelength / cover.element_size),

@@ -101,7 +101,7 @@ def run_evaluation(
             out, resume=resume, score=score, single_file=single_file, force=force, progress=show
         )
     print_zones(seat.assessment.zones, seat.resolution, json=json)
-    note(f"gallery: {outcome.page}")
+    note(*outcome.answer, f"gallery: {outcome.page}")
     if outcome.score and outcome.score.refused:
         say(f"no score: {outcome.score.refused}")
     say(*outcome.missed)

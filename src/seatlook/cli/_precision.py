@@ -38,13 +38,21 @@ def precision(
     if out is not None:
         checked_result_name(out)
     with progress() as show:
-        precise = seat_of(scene, seed).precision(tolerance, progress=show)
+        seat = seat_of(scene, seed)
+        precise = seat.precision(tolerance, progress=show)
     if out is not None:
         io.write_result(precise.solution, out)
     table(
-        ("zone", "w2_mean", "error", "scatter", "status"),
+        ("zone", "w2_mean", "w2_mesh_error", "w2_scatter", "criterion", "status"),
         [
-            (zone.zone, zone.w2_mean, zone.error, zone.scatter, precise.resolution.status)
+            (
+                zone.zone,
+                zone.w2_mean,
+                zone.error,
+                zone.scatter,
+                zone.criterion,
+                precise.resolution.status,
+            )
             for zone in precise.zones
         ],
         json=json,

@@ -119,13 +119,14 @@ def assess_file(file: Path, options: ShellOptions, asked: _Asked, outputs: _Outp
             "file": str(file),
             "curvature": criteria.curvature,
             "c_threshold_per_mm": criteria.threshold * _MM,
+            "criterion": criteria.words(),
             "shells": len(result.shells),
             "notes": list(result.notes),
             "states": states.figures,
         }
         show_json(data)
     else:
-        _print_states(states.figures)
+        _print_states(states.figures, criteria.words())
 
 
 def _criteria(options: ShellOptions, asked: _Asked) -> ShellCriteria:
@@ -193,19 +194,29 @@ def _draw(
         export(assessment, path)
 
 
-def _print_states(figures: Sequence[Mapping[str, Any]]) -> None:
+def _print_states(figures: Sequence[Mapping[str, Any]], criterion: str) -> None:
     """Print one row per state, and one per part where there are several."""
     curvatures = ("c", "c_min", "c_max")
     heads = ("time", *curvatures, *_SHOWN, "h_mm", "source")
     table(
-        ("state", *(f"{head}_per_mm" if head in curvatures else head for head in heads)),
-        [(k, *(row[h] for h in heads)) for k, row in enumerate(figures)],
+        (
+            "state",
+            *(f"{head}_per_mm" if head in curvatures else head for head in heads),
+            "criterion",
+        ),
+        [(k, *(row[h] for h in heads), criterion) for k, row in enumerate(figures)],
         json=False,
     )
     if len(figures[0]["parts"]) > 1:
         print_rows(
             [
-                {"state": k, "part": p["part"], "name": p["name"], **{h: p[h] for h in _SHOWN}}
+                {
+                    "state": k,
+                    "part": p["part"],
+                    "name": p["name"],
+                    **{h: p[h] for h in _SHOWN},
+                    "criterion": criterion,
+                }
                 for k, row in enumerate(figures)
                 for p in row["parts"]
             ]

@@ -189,6 +189,7 @@ def _print(
             "reason": assessment.resolution.reason,
             "curvature": assessment.criteria.curvature,
             "c_threshold_per_mm": [_MM * v for v in assessment.criteria.thresholds],
+            "criterion": assessment.criteria.words(),
             "zones": [row.values() for row in assessment.zones],
             "worst": worst,
             "seam_excess": seams,

@@ -60,7 +60,7 @@ class Questionnaire:
     Parameters
     ----------
     stimuli : three or more
-    catches : pairs that screen judges, shown under "wrinkles"
+    catches : pairs that screen judges, shown under ``screening``
     questions : asked one after the other over all pairs
     repeat_share : share of the pairs shown again with sides exchanged
     ties : whether "equal" may be answered
@@ -113,6 +113,11 @@ class Questionnaire:
             raise InputError(problems)
         text = json.dumps(_content(self), sort_keys=True, ensure_ascii=True)
         object.__setattr__(self, "digest", hashlib.sha256(text.encode()).hexdigest()[:16])
+
+    @property
+    def screening(self) -> str | None:
+        """Question under which catch pairs are shown; a preference has no right answer."""
+        return next((q for q in (WRINKLES, SEEN) if q in self.questions), None)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -208,7 +213,7 @@ def trials(questionnaire: Questionnaire, seed: int) -> tuple[Trial, ...]:
         sided = [(b, a) if k in turned else (a, b) for k, (a, b) in enumerate(pairs)]
         block: list[tuple[Kind, str, str]] = [("pair", *pair) for pair in sided]
         _insert_repeats(block, questionnaire.repeat_share, rng)
-        if question == WRINKLES:
+        if question == questionnaire.screening:
             for catch in questionnaire.catches:
                 pair = (catch.wrinkled.name, catch.smooth.name)
                 left, right = pair if rng.random() < 0.5 else pair[::-1]

@@ -21,7 +21,7 @@ from typing import Any
 
 from seatlook.errors import Problem, did_you_mean
 from seatlook.io.schema import shown
-from seatlook.jury.questionnaire import SCHEMA, WRINKLES, Kind, Questionnaire, trials
+from seatlook.jury.questionnaire import SCHEMA, Kind, Questionnaire, trials
 
 _KEYS = {"trial", "question", "left", "right", "choice"}
 
@@ -228,11 +228,11 @@ def _pair_problems(
         return
     pair = {entry["left"], entry["right"]}
     ranked = len(pair) == 2 and pair <= set(questionnaire.names)
-    if not ranked and not (pair in catches and entry["question"] == WRINKLES):
+    if not ranked and not (pair in catches and entry["question"] == questionnaire.screening):
         yield Problem(
             key=key,
             got=f"{entry['left']!r} beside {entry['right']!r} under {shown(entry['question'])}",
-            expected="two ranked stimuli, or a catch pair under 'wrinkles'",
+            expected=f"two ranked stimuli, or a catch pair under {shown(questionnaire.screening)}",
             file=path,
         )
 

@@ -46,15 +46,20 @@ def write_report(
 ) -> Path:
     """Write the gallery page of an evaluation into its folder and return its path."""
     data = page_data(evaluation)
-    checks = (*_limits(evaluation), *(score.checks if score else ()))
     data = replace(
         data,
         score=score,
-        summary=first_lines(evaluation.case.assessment, score, checks),
+        summary=page_answer(evaluation, score),
         close_up=_close_up(evaluation, score),
         viewer=viewer_section(evaluation.case, evaluation.camera, evaluation.folder),
     )
     return write_page(data, evaluation.folder, single_file=single_file)
+
+
+def page_answer(evaluation: Evaluation, score: ScoreSection | None) -> tuple[str, ...]:
+    """The sentences that the page begins with, and the command line ends with."""
+    checks = (*_limits(evaluation), *(score.checks if score else ()))
+    return first_lines(evaluation.case.assessment, score, checks)
 
 
 def _close_up(evaluation: Evaluation, score: ScoreSection | None) -> CloseUp:

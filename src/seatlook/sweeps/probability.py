@@ -12,7 +12,7 @@ import numpy as np
 from seatlook import io, pbr
 from seatlook.chain.case import Case
 from seatlook.errors import InputError
-from seatlook.model import Cover, FloatArray
+from seatlook.model import Cover, Criteria, FloatArray
 from seatlook.sweeps.cell import Cell, failed
 from seatlook.sweeps.summary import at_rest, rows
 
@@ -69,8 +69,15 @@ def chance(cells: Sequence[Cell], folder: Path) -> Chance:
     return Chance(share=np.mean(above, axis=0), converged=len(above), left_out=left_out)
 
 
-def zone_chances(probability: Chance, cover: Cover) -> list[dict[str, str | int | float]]:
-    """One row per zone of the cover as drawn: means by area, and where it is largest."""
+def zone_chances(
+    probability: Chance, cover: Cover, criteria: Criteria
+) -> list[dict[str, str | int | float]]:
+    """One row per zone of the cover as drawn: means by area, and where it is largest.
+
+    Parameters
+    ----------
+    criteria : by which W2 of the covers was evaluated
+    """
     area, listed = cover.rest_area, []
     columns = {
         "": probability.share,
@@ -82,7 +89,8 @@ def zone_chances(probability: Chance, cover: Cover) -> list[dict[str, str | int 
         if not inside.any():
             continue
         row: dict[str, str | int | float] = {
-            "zone": zone, "converged": probability.converged, "left_out": probability.left_out,
+            "zone": zone, "criterion": criteria.words(cover.panel[inside]),
+            "converged": probability.converged, "left_out": probability.left_out,
         }  # fmt: skip
         for end, share in columns.items():
             row[f"probability{end}"] = float(share[inside] @ area[inside] / area[inside].sum())
@@ -97,7 +105,8 @@ def draw_chance(
     """Draw the probability that W2 is above 1 on the cover as drawn; return its zones."""
     spec = json.loads(cells[0].spec)
     scene = io.load_scene(spec["scene"], changes=spec["set"])
-    solution = Case(scene).solution
+    case = Case(scene)
+    solution = case.solution
     pbr.render_map(
         solution,
         probability.share,
@@ -107,7 +116,7 @@ def draw_chance(
         value_range=(0.0, 1.0),
         colormap="cividis",
     ).save(path)
-    return zone_chances(probability, solution.cover)
+    return zone_chances(probability, solution.cover, case.criteria)
 
 
 def _title(probability: Chance) -> str:

@@ -80,8 +80,14 @@ def rows(cells: Sequence[Cell], folder: Path) -> list[dict[str, Any]]:
             row[key] = value
         for tolerance, value in zip(result["inputs"], result["values"] or (), strict=False):
             row[tolerance["name"]] = value
+        row["criterion"] = "; ".join(dict.fromkeys(map(_criterion, result["zones"])))
         table.append(row | overall(result["zones"]))
     return table
+
+
+def _criterion(zone: dict[str, Any]) -> str:
+    """Mode and threshold of a zone's W2; cells of older versions do not state them."""
+    return str(zone.get("criterion", "not stated"))
 
 
 def at_rest(row: dict[str, Any]) -> bool:

@@ -109,20 +109,38 @@ def _on_seam(parts: Sequence[SeamStretch], level: float, ranks: tuple[int, ...])
     )
     tight = off_short > _CLEAR * off_long
     sided = tight or off_long > _CLEAR * off_short
-    panel, other = (short, long) if tight else (long, short)
+    panel = short if tight else long
+    largest = max(parts, key=lambda s: s.excess)
+    at_long, at_short = _edges(largest)
+    edge, other_edge = (at_short, at_long) if tight else (at_long, at_short)
     action: Action = "let out" if tight else "take out"
     way = f"let {_mm(amount)} into" if tight else f"take {_mm(amount)} out of"
-    half = "" if sided else f", or half of it, and the other half on the edge of {other}"
+    half = "" if sided else f", or half of it, and the other half on the edge of {other_edge}"
     place = f"from {parts[0].begin} to {parts[-1].end}"
     return Advice(
         action=action, panel=panel, seam=seam, place=place, amount=amount, scatter=scatter,
         confidence=_confidence(amount, scatter, sided),
-        position=max(parts, key=lambda s: s.excess).middle, wrinkles=ranks,
+        position=largest.middle, wrinkles=ranks,
         sentence=(
-            f"seam {seam}, {place}: {long} is {_mm(amount, scatter)} longer than {short}; "
-            f"{way} the edge of {panel}{half}"
+            f"seam {seam}, {place}: {at_long} is {_mm(amount, scatter)} longer than {at_short}; "
+            f"{way} the edge of {edge}{half}"
         ),
     )  # fmt: skip
+
+
+def _edges(stretch: SeamStretch) -> tuple[str, str]:
+    """How the longer and the shorter edge are said: by panel, and by place where both are of one.
+
+    A panel that closes a tube, or is darted, is sewn to itself: its name does not say which edge.
+    """
+    names = stretch.long_panel, stretch.short_panel
+    if names[0] != names[1]:
+        return names
+    long, short = (
+        f"{name} at pattern u, v = {1e3 * u:.0f}, {1e3 * v:.0f} mm"
+        for name, (u, v) in zip(names, (stretch.long_uv, stretch.short_uv), strict=True)
+    )
+    return long, short
 
 
 def is_clear(stretch: SeamStretch) -> bool:

@@ -36,6 +36,7 @@ class SeamStretch:
     long_panel, short_panel : names; the long one is compressed or lies in waves
     length : float [m]             of the sewn line as it was solved
     middle : (3,) float64 [m]      in space
+    long_uv, short_uv : (2,) float64 [m]     middle of either line in pattern coordinates
     excess : float [m] >= 0        what the long line is longer by; the sum of the next two
     compression : float [m]        of it, what the long side is compressed by at the seam
     tension : float [m]            of it, what the short side is stretched by at the seam
@@ -53,6 +54,8 @@ class SeamStretch:
     short_panel: str
     length: float
     middle: FloatArray
+    long_uv: FloatArray
+    short_uv: FloatArray
     excess: float
     compression: float
     tension: float
@@ -109,6 +112,7 @@ def _stretches(along: _Along, seam: Stitching, bad: np.ndarray) -> Iterator[Seam
         at_first, at_last = np.interp([first, last], place, arc)
         length = float(at_last - at_first)
         a, b = fits[long], fits[short]
+        centres = [points.at(cover.uv)[round(0.5 * (first + last))] for points in (seam.a, seam.b)]
         yield SeamStretch(
             seam=seam.name,
             begin=number.get(first) or along.neighbour(seam, int(first)),
@@ -117,6 +121,8 @@ def _stretches(along: _Along, seam: Stitching, bad: np.ndarray) -> Iterator[Seam
             short_panel=cover.panel_names[sides[short].panel],
             length=length,
             middle=mesh.points_at(line, np.array([0.5 * (at_first + at_last)]))[0],
+            long_uv=centres[long],
+            short_uv=centres[short],
             excess=length * (b.strain - a.strain),
             waves=along.waves(sides[long], (seam.a, seam.b)[long], first, last),
             long_strain=a.strain,

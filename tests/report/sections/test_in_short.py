@@ -111,6 +111,18 @@ def test_what_scores_without_a_valley_is_said_beside_it():
     assert not any("Broad" in line for line in first_lines(assessment(), quiet, ()))
 
 
+@pytest.mark.parametrize(("vwi", "although"), [(0.4, True), (7.5, False)])
+def test_a_correction_of_what_does_not_show_does_not_read_as_a_contradiction(vwi, although):
+    cells = MappingProxyType({("suede", "sun"): vwi})
+    off = assessment(advice=(advice(),))
+    said = first_lines(off, ScoreSection(cells=cells, places=()), ())
+    correction = next(line for line in said if line.endswith("(confidence: high)."))
+    assert correction.startswith("To be corrected although it does not show: ") == although
+    assert "3 mm out of the insert" in correction
+    # Without a score nobody knows what shows.
+    assert "Take 3 mm out of the insert (confidence: high)." in first_lines(off, None, ())
+
+
 def test_where_nothing_can_be_advised_the_reason_is_said():
     assert lines(place())[1] == "No correction: nothing is clearly too long or too tight here."
     coarse = assessment(wrinkle(resolved=False))

@@ -64,6 +64,20 @@ class ShellCriteria:
         """C_threshold [1/m] that is used."""
         return DEFAULT_THRESHOLD[self.curvature] if self.c_threshold is None else self.c_threshold
 
+    def words(self) -> str:
+        """Mode and threshold as every table of W2 states them.
+
+        Examples
+        --------
+        >>> ShellCriteria(curvature="tensor", strain_measure="logarithmic").words()
+        'tensor of logarithmic strain, 0.02 per mm'
+        """
+        return Criteria(
+            curvature=self.curvature,
+            thresholds=(self.threshold,),
+            strain_measure=self.strain_measure or "green",
+        ).words()
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShellWrinkles(ShellStrains):
@@ -106,11 +120,12 @@ def wrinkle_states(
     Returns
     -------
     dict
-        ``file``, ``curvature``, ``c_threshold_per_mm``, ``shells``, ``notes``, ``states``. Each
-        state has ``time``; ``c``, ``c_min``, ``c_max`` [1/mm], ``w1`` and ``r_stretch``, of which
-        ``c``, ``w1`` and ``r_stretch`` are means weighted by area; ``w2``, ``w_stretch``,
-        ``w_compression`` (means), ``w2_p95`` and ``w2_area_share`` (share above 1); the element
-        size ``h_mm``; ``source`` of the curvature; and the same figures per part in ``parts``.
+        ``file``, ``curvature``, ``c_threshold_per_mm``, ``criterion`` (both in words), ``shells``,
+        ``notes``, ``states``. Each state has ``time``; ``c``, ``c_min``, ``c_max`` [1/mm], ``w1``
+        and ``r_stretch``, of which ``c``, ``w1`` and ``r_stretch`` are means weighted by area;
+        ``w2``, ``w_stretch``, ``w_compression`` (means), ``w2_p95`` and ``w2_area_share`` (share
+        above 1); the element size ``h_mm``; ``source`` of the curvature; and the same figures per
+        part in ``parts``.
 
     Raises
     ------
@@ -123,6 +138,7 @@ def wrinkle_states(
         "file": str(path),
         "curvature": chosen.curvature,
         "c_threshold_per_mm": chosen.threshold * _PER_MM,
+        "criterion": chosen.words(),
         "shells": len(result.shells),
         "notes": list(result.notes),
         "states": [state_figures(result, *pair) for pair in evaluated_states(path, result, chosen)],

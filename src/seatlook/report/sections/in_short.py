@@ -110,7 +110,12 @@ def _correction(assessment: Assessment, score: ScoreSection | None) -> Iterator[
     rank = next((place.rank for place in shown if place.rank), None)
     best = next((a for a in known if rank in a.wrinkles), next(iter(known), None))
     if best is not None:
-        yield f"{_capital(best.sentence)} (confidence: {best.confidence})."
+        # Right below "no wrinkle shows", a correction alone would read as a contradiction.
+        seen = (
+            max(score.cells.values(), default=0.0) if score and score.places is not None else SHOWS
+        )
+        although = "" if shown or seen >= SHOWS else "to be corrected although it does not show: "
+        yield f"{_capital(although + best.sentence)} (confidence: {best.confidence})."
     elif rank:
         why = advice_on(assessment.wrinkles[rank - 1], rank, known).removeprefix("none: ")
         yield f"No correction: {why}."
