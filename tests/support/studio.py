@@ -85,11 +85,11 @@ def let_in(port: int, token: str) -> Client:
 
 
 @contextmanager
-def studio(folder: Path) -> Iterator[tuple[Door, Client]]:
+def studio(folder: Path, library: Path | None = None) -> Iterator[tuple[Door, Client]]:
     """Serve a folder in a thread."""
     with listen(0) as listening:
         door = Door(listening.getsockname()[1])
-        config = uvicorn.Config(make_app(Session(Folder(folder)), door), log_level="error")
+        config = uvicorn.Config(make_app(Session(Folder(folder)), door, library), log_level="error")
         server = uvicorn.Server(config)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
         thread.start()

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from seatlook.cli._library import Root, library_root
 from seatlook.cli._output import note, table
 
 
@@ -15,6 +16,7 @@ def studio(
     /,
     *,
     port: Annotated[int, Parameter(help="Port to listen on; 0 takes a free one.")] = 0,
+    root: Root = None,
     browser: Annotated[bool, Parameter(help="Open the address in the browser.")] = True,
 ) -> None:
     """Set a seat up by clicking: start, sew, hook, light and run it in the browser.
@@ -34,4 +36,4 @@ def studio(
 
             webbrowser.open(address)
 
-    serve(folder, port=port, started=started)
+    serve(folder, port=port, library=library_root(root), started=started)

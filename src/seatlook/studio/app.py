@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Awaitable, Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 from starlette.applications import Starlette
@@ -18,6 +19,7 @@ from seatlook.errors import InputError, SeatlookError
 from seatlook.studio.guard import Door, Guard
 from seatlook.studio.picking import partner
 from seatlook.studio.session import Clash, Session
+from seatlook.studio.shelf import Shelf
 from seatlook.studio.shell import page
 from seatlook.studio.starting import UPLOADS, preview
 from seatlook.studio.state import material_values, problem_values
@@ -37,7 +39,7 @@ class TooLarge(Exception):  # noqa: N818 -- it says what is wrong
     """More was posted than is read."""
 
 
-def make_app(session: Session, door: Door) -> Starlette:
+def make_app(session: Session, door: Door, library: Path | None = None) -> Starlette:
     """Put a session behind its guard."""
     work = Work(session, door)
     routes = [
@@ -51,6 +53,9 @@ def make_app(session: Session, door: Door) -> Starlette:
         Route("/api/materials", _answering(_materials)),
         Route("/api/start", _answering(_start), methods=["POST"]),
         Route("/api/upload", _answering(_upload), methods=["POST"]),
+        Route("/api/library", _answering(_library)),
+        Route("/api/library/thumbnail", _answering(_thumbnail)),
+        Route("/api/library/use", _answering(_use), methods=["POST"]),
         Route("/api/runs", _answering(_runs)),
         Route("/api/run", _answering(_run), methods=["POST"]),
         Route("/api/run/cancel", _answering(_cancel), methods=["POST"]),
@@ -61,7 +66,7 @@ def make_app(session: Session, door: Door) -> Starlette:
     app = Starlette(
         routes=routes, middleware=[Middleware(Guard, door=door)], lifespan=work.lifespan
     )
-    app.state.work = work
+    app.state.work, app.state.shelf = work, Shelf(session, library)
     return app
 
 
@@ -131,6 +136,20 @@ async def _upload(request: Request) -> Response:
     folder, name = session_of(request).folder, request.query_params.get("name", "")
     path, count = await receive(folder.inside(UPLOADS), name, request.stream())
     return answer({"path": path.relative_to(folder.root).as_posix(), "bytes": count})
+
+
+async def _library(request: Request) -> Response:
+    return answer(await run_in_threadpool(request.app.state.shelf.values))
+
+
+async def _thumbnail(request: Request) -> Response:
+    place = request.query_params.get("place", "")
+    path = await run_in_threadpool(request.app.state.shelf.picture, place)
+    return _said("it has no picture", 404) if path is None else FileResponse(path, headers=APART)
+
+
+async def _use(request: Request) -> Response:
+    return await _stated(request, request.app.state.shelf.use, await posted(request))
 
 
 async def _runs(request: Request) -> Response:

@@ -19,13 +19,20 @@ from seatlook.studio.session import Session
 _LOOPBACK = "127.0.0.1"
 
 
-def serve(folder: Path, *, port: int = 0, started: Callable[[str], None] = print) -> None:
+def serve(
+    folder: Path,
+    *,
+    port: int = 0,
+    library: Path | None = None,
+    started: Callable[[str], None] = print,
+) -> None:
     """Serve a folder to the browsers of this machine.
 
     Parameters
     ----------
     folder : with a scene in it, or to make one in
     port : 0 takes any that is free
+    library : folder of a library to take from
     started : told the address, with its token, once it is there to be opened
 
     Raises
@@ -39,7 +46,7 @@ def serve(folder: Path, *, port: int = 0, started: Callable[[str], None] = print
     with _alone(own), listen(port) as listening:
         door = Door(listening.getsockname()[1])
         config = uvicorn.Config(
-            make_app(Session(own), door),
+            make_app(Session(own), door, library),
             log_level="warning",
             access_log=False,
             server_header=False,

@@ -9,7 +9,18 @@ from seatlook.errors import InputError, did_you_mean
 from seatlook.studio.edits import arrange, scene, seams
 from seatlook.studio.edits.draft import Draft, Edit
 
-TABLES = ("camera", "gallery", "mesh", "wrinkle", "improve", "check", "pattern", "foam", "thread")
+TABLES = (
+    "accept",
+    "camera",
+    "gallery",
+    "mesh",
+    "wrinkle",
+    "improve",
+    "check",
+    "pattern",
+    "foam",
+    "thread",
+)
 ROWS = ("stage", "hook", "frame", "rig")
 
 KINDS: dict[str, Callable[[Draft, Edit], None]] = {

@@ -2,6 +2,7 @@
 
 import { choiceField, find, make, numberField, part, press, put } from "../dom.js";
 import { Refusal, tell, upload } from "../api.js";
+import { LibraryShelf } from "./library.js";
 
 /** @typedef {import("../store.js").Store} Store */
 /** @typedef {{files: Record<string, string>, keys: Record<string, string>}} Draft what is asked for so far */
@@ -35,8 +36,11 @@ export class StartRoom {
     this.opened = opened;
     this.shape = "cushion";
     this.scale = 1;
+    /** @type {Record<string, Draft>} */
+    this.drafts = {};
     for (const kind of ["pattern", "surface"]) this.form(kind);
     this.demo();
+    this.library = new LibraryShelf((state, entry) => this.fromLibrary(state, entry));
   }
 
   show() {
@@ -55,6 +59,7 @@ export class StartRoom {
   form(kind) {
     /** @type {Draft} */
     const draft = { files: {}, keys: {} };
+    this.drafts[kind] = draft;
     const files = FILES[kind].map(({ text, needed, key, accept }) => {
       const input = make("input", { type: "file", accept, id: `${kind}-${key}`, required: needed });
       input.addEventListener("change", () => void this.fetchFile(input, key, draft, kind));
@@ -72,6 +77,30 @@ export class StartRoom {
       kind === "pattern" ? choiceField("Letters of its names", "", ENCODINGS, set("encoding"), { id: "pattern-encoding" }) : null,
       make("div", { id: `seen-${kind}`, "aria-live": "polite" }),
       press("Take it", () => void this.take(asked(kind, draft, false), kind), { id: `${kind}-take`, class: "main", disabled: true }));
+  }
+
+  /**
+   * A pattern or foam stands for a chosen file; all else is in the folder now.
+   * @param {any} state
+   * @param {import("./library.js").Entry} entry
+   */
+  fromLibrary(state, entry) {
+    this.store.take(state);
+    if (!state.files_to_start) {
+      if (entry.kind === "seat") this.opened();
+      return;
+    }
+    for (const [kind, draft] of Object.entries(this.drafts)) {
+      for (const { key } of FILES[kind]) {
+        if (!(key in state.files_to_start)) continue;
+        draft.files[key] = state.files_to_start[key];
+        find(`${kind}-${key}`, HTMLInputElement).required = false;
+      }
+      const ready = this.ready(kind, draft);
+      find(`${kind}-take`, HTMLButtonElement).disabled = !ready;
+      if (ready) void this.take(asked(kind, draft, true), kind);
+      else this.say(kind, `${entry.label} of the library is here.`);
+    }
   }
 
   /** @param {string} kind @param {Draft} draft */
