@@ -167,8 +167,8 @@ def stepped_back(camera: Camera, points: FloatArray) -> Camera:
     --------
     >>> near = Camera(name="near", position=np.array([0.0, -1.0, 0.0]), target=np.zeros(3))
     >>> far = stepped_back(near, np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
-    >>> round(-far.position[1], 2)
-    4.18
+    >>> round(float(-far.position[1]), 2)
+    4.19
     """
     away = camera.position - camera.target
     distance = float(np.linalg.norm(away))

@@ -24,8 +24,8 @@ def turned_camera(camera: Camera, angle_deg: float) -> Camera:
     Examples
     --------
     >>> front = Camera(name="front", position=np.array([0.0, -2.0, 1.0]), target=np.zeros(3))
-    >>> turned_camera(front, 90.0).position.round(9).tolist()
-    [2.0, 0.0, 1.0]
+    >>> turned_camera(front, 30.0).position.round(3).tolist()
+    [1.0, -1.732, 1.0]
     """
     rotation = about_z(angle_deg)
     position = camera.target + rotation @ (camera.position - camera.target)
