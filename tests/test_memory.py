@@ -7,8 +7,8 @@ import pytest
 
 from seatlook import _memory
 
-# Arrays of a size that glibc serves from its heap once one of them was freed, and a small one that
-# lives behind them, as a result does behind the matrices of its solve.
+# Arrays of a size that glibc serves from its heap once one of them was freed, and one that lives
+# behind them, as a result does behind the matrices of its solve: too large for any gap before them.
 KEPT = """
 import numpy as np
 from seatlook._memory import give_back
@@ -20,7 +20,7 @@ def resident():
 np.ones(3_000_000)
 before = resident()
 parts = [np.ones(2_000_000) for _ in range(20)]
-result = np.ones(10_000)
+result = np.ones(1_000_000)
 del parts
 kept = resident() - before
 give_back()
@@ -36,7 +36,7 @@ def test_what_is_free_is_given_back():
     kept, left, total = map(float, done.stdout.split())
     assert kept > 200_000  # kB: else nothing is shown here
     assert left < 0.1 * kept
-    assert total == 10_000
+    assert total == 1_000_000
 
 
 def test_without_glibc_nothing_happens(monkeypatch):
